@@ -5,6 +5,9 @@
 #include "acrobot_f64.h"
 
 #include <math.h>
+#undef I_1
+#undef I_2
+#undef T
 
 #if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || \
     (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)

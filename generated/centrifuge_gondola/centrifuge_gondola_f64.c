@@ -6,6 +6,8 @@
 #include "centrifuge_gondola_f64.h"
 
 #include <math.h>
+#undef F
+#undef M
 
 #if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || \
     (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)

@@ -16,21 +16,31 @@
  * Use:
  *     centrifuge_gondola_constants_f64 constants;
  *     if (centrifuge_gondola_setup_f64(450.0, 300.0, 375.0, 350.0, 0.0, 0.05, (-0.15), &constants) != 0) { return 1; }
- *     double F[3];
- *     centrifuge_gondola_F_f64(&constants, 0.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, F);
+ *     double own_F[3];
+ *     centrifuge_gondola_F_f64(&constants, 0.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, own_F);
  *
  * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 f01e1ae0c898c2aa.
+ * Body of these files: sha256 8ccf22173a4ac143.
  */
 #ifndef CENTRIFUGE_GONDOLA_F64_H
 #define CENTRIFUGE_GONDOLA_F64_H
 
+#if defined(__SIZEOF_DOUBLE__) && __SIZEOF_DOUBLE__ < 8
+#error "double has fewer than 64 bits here: use the C in float, packages by --precision float"
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* Macros of headers above that are called like names here are put aside until the end of this file. */
+#pragma push_macro("F")
+#undef F
+#pragma push_macro("M")
+#undef M
 
 /* Constants made of parameters only, by centrifuge_gondola_setup_f64. */
 typedef struct {
@@ -86,7 +96,7 @@ int centrifuge_gondola_setup_f64(double m, double I_xx, double I_yy, double I_zz
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.64, largest 20 u of the largest product or sum in the equation (of F; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8342 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: F 1.1e-11 N (seen 6e-12);
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: F 1.1e-11 N (seen 6.1e-12);
  *            assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 11 add, 16 sub, 48 mul, 3 sin, 3 cos.
  * On Cortex-M0+, -O2: 46902 to 51962 instructions, 2136 B of code, 368 B of stack.
@@ -117,7 +127,7 @@ void centrifuge_gondola_F_f64(const centrifuge_gondola_constants_f64 *constants,
  * Error: median 0.97, largest 17 u of the largest product or sum in the equation (of M; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8342 hard samples 18 u (of
  *            M, thin rod).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: M 2.2e-11 N m (seen 4e-12);
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: M 2.1e-11 N m (seen 5.7e-12);
  *            assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 15 add, 18 sub, 56 mul, 3 sin, 3 cos.
  * On Cortex-M0+, -O2: 50213 to 55244 instructions, 2340 B of code, 392 B of stack.
@@ -128,6 +138,9 @@ void centrifuge_gondola_F_f64(const centrifuge_gondola_constants_f64 *constants,
 void centrifuge_gondola_M_f64(const centrifuge_gondola_constants_f64 *constants, double yaw,
     double yaw_dot, double yaw_ddot, double pitch, double pitch_dot, double pitch_ddot, double spin,
     double spin_dot, double spin_ddot, double a_x, double a_y, double M[3]);
+
+#pragma pop_macro("F")
+#pragma pop_macro("M")
 
 #ifdef __cplusplus
 }

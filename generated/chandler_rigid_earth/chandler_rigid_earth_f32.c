@@ -4,6 +4,8 @@
  * What each function is given, returns and guarantees is said in chandler_rigid_earth_f32.h.
  */
 #include "chandler_rigid_earth_f32.h"
+#undef A
+#undef C
 
 #if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || \
     (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)

@@ -18,7 +18,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 b0255d494cc95815.
+ * Body of these files: sha256 32049b7822741c7e.
  */
 #ifndef CHANDLER_RIGID_EARTH_F32_H
 #define CHANDLER_RIGID_EARTH_F32_H
@@ -26,6 +26,12 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* Macros of headers above that are called like names here are put aside until the end of this file. */
+#pragma push_macro("A")
+#undef A
+#pragma push_macro("C")
+#undef C
 
 /* Constants made of parameters only, by chandler_rigid_earth_setup_f32. */
 typedef struct {
@@ -67,6 +73,9 @@ int chandler_rigid_earth_setup_f32(float A, float C, float rate,
  */
 void chandler_rigid_earth_period_days_f32(const chandler_rigid_earth_constants_f32 *constants,
     float *period_days);
+
+#pragma pop_macro("A")
+#pragma pop_macro("C")
 
 #ifdef __cplusplus
 }

@@ -18,14 +18,24 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 9e3efacb369fa0f7.
+ * Body of these files: sha256 cf1e924179598af8.
  */
 #ifndef CHANDLER_RIGID_EARTH_F64_H
 #define CHANDLER_RIGID_EARTH_F64_H
 
+#if defined(__SIZEOF_DOUBLE__) && __SIZEOF_DOUBLE__ < 8
+#error "double has fewer than 64 bits here: use the C in float, packages by --precision float"
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* Macros of headers above that are called like names here are put aside until the end of this file. */
+#pragma push_macro("A")
+#undef A
+#pragma push_macro("C")
+#undef C
 
 /* Constants made of parameters only, by chandler_rigid_earth_setup_f64. */
 typedef struct {
@@ -65,6 +75,9 @@ int chandler_rigid_earth_setup_f64(double A, double C, double rate,
  */
 void chandler_rigid_earth_period_days_f64(const chandler_rigid_earth_constants_f64 *constants,
     double *period_days);
+
+#pragma pop_macro("A")
+#pragma pop_macro("C")
 
 #ifdef __cplusplus
 }

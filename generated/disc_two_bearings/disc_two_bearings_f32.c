@@ -3,6 +3,7 @@
  * What each function is given, returns and guarantees is said in disc_two_bearings_f32.h.
  */
 #include "disc_two_bearings_f32.h"
+#undef W
 
 #if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || \
     (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)

@@ -21,7 +21,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 ee7073c25b62b0c9.
+ * Body of these files: sha256 fb6fcad03f187c1e.
  */
 #ifndef DISC_TWO_BEARINGS_F32_H
 #define DISC_TWO_BEARINGS_F32_H
@@ -29,6 +29,10 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* Macros of headers above that are called like names here are put aside until the end of this file. */
+#pragma push_macro("W")
+#undef W
 
 /* Constants made of parameters only, by disc_two_bearings_setup_f32. */
 typedef struct {
@@ -108,6 +112,8 @@ void disc_two_bearings_R_up_f32(const disc_two_bearings_constants_f32 *constants
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
 void disc_two_bearings_R_down_f32(const disc_two_bearings_constants_f32 *constants, float *R_down);
+
+#pragma pop_macro("W")
 
 #ifdef __cplusplus
 }

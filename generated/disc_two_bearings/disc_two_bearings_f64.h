@@ -20,14 +20,22 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 f959d6adbb2a54ac.
+ * Body of these files: sha256 63f3c0c37373e79e.
  */
 #ifndef DISC_TWO_BEARINGS_F64_H
 #define DISC_TWO_BEARINGS_F64_H
 
+#if defined(__SIZEOF_DOUBLE__) && __SIZEOF_DOUBLE__ < 8
+#error "double has fewer than 64 bits here: use the C in float, packages by --precision float"
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* Macros of headers above that are called like names here are put aside until the end of this file. */
+#pragma push_macro("W")
+#undef W
 
 /* Constants made of parameters only, by disc_two_bearings_setup_f64. */
 typedef struct {
@@ -103,6 +111,8 @@ void disc_two_bearings_R_up_f64(const disc_two_bearings_constants_f64 *constants
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
 void disc_two_bearings_R_down_f64(const disc_two_bearings_constants_f64 *constants, double *R_down);
+
+#pragma pop_macro("W")
 
 #ifdef __cplusplus
 }

@@ -3,6 +3,9 @@
  * What each function is given, returns and guarantees is said in edge_runner_flat_f64.h.
  */
 #include "edge_runner_flat_f64.h"
+#undef L
+#undef N
+#undef W
 
 #if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || \
     (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)

@@ -15,21 +15,33 @@
  * Use:
  *     edge_runner_flat_constants_f64 constants;
  *     if (edge_runner_flat_setup_f64(1200.0, 0.6, 0.95, 9.8, &constants) != 0) { return 1; }
- *     double N;
- *     edge_runner_flat_N_f64(&constants, 3.0, &N);
+ *     double own_N;
+ *     edge_runner_flat_N_f64(&constants, 3.0, &own_N);
  *
  * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 1f92352e387f31aa.
+ * Body of these files: sha256 7f50110f8d283759.
  */
 #ifndef EDGE_RUNNER_FLAT_F64_H
 #define EDGE_RUNNER_FLAT_F64_H
 
+#if defined(__SIZEOF_DOUBLE__) && __SIZEOF_DOUBLE__ < 8
+#error "double has fewer than 64 bits here: use the C in float, packages by --precision float"
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* Macros of headers above that are called like names here are put aside until the end of this file. */
+#pragma push_macro("L")
+#undef L
+#pragma push_macro("N")
+#undef N
+#pragma push_macro("W")
+#undef W
 
 /* Constants made of parameters only, by edge_runner_flat_setup_f64. */
 typedef struct {
@@ -145,6 +157,10 @@ void edge_runner_flat_hinge_radial_f64(const edge_runner_flat_constants_f64 *con
  */
 void edge_runner_flat_hinge_z_f64(const edge_runner_flat_constants_f64 *constants, double W,
     double *hinge_z);
+
+#pragma pop_macro("L")
+#pragma pop_macro("N")
+#pragma pop_macro("W")
 
 #ifdef __cplusplus
 }

@@ -23,6 +23,10 @@
 #ifndef FREE_BODY_F64_H
 #define FREE_BODY_F64_H
 
+#if defined(__SIZEOF_DOUBLE__) && __SIZEOF_DOUBLE__ < 8
+#error "double has fewer than 64 bits here: use the C in float, packages by --precision float"
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -106,8 +110,8 @@ int free_body_setup_f64(double I_xx, double I_yy, double I_zz, double I_xy, doub
  * Error: median 0.24, largest 7.3 u of the largest product or sum in the equation (of omega_dot;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8348 hard samples
  *            8.1 u (of omega_dot, turned, ill-conditioned).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: omega_dot 9.2e-14 rad/s^2 (seen
- *            4.3e-14).
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: omega_dot 9.3e-14 rad/s^2 (seen
+ *            6e-14).
  * Cost: 13 add, 4 sub, 23 mul.
  * On Cortex-M0+, -O2: 9157 to 9512 instructions, 676 B of code, 152 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
@@ -126,8 +130,8 @@ void free_body_acceleration_f64(const free_body_constants_f64 *constants, const 
  * Error: median 0.28, largest 6.6 u of the largest product or sum in the equation (of jacobian;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8348 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: omega_dot 8.1e-14 rad/s^2 (seen
- *            4.5e-14), jacobian 4.1e-15 (seen 3.4e-15).
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: omega_dot 6.6e-14 rad/s^2 (seen
+ *            4e-14), jacobian 3.9e-15 (seen 3.1e-15).
  * Cost: 21 add, 12 sub, 48 mul.
  * On Cortex-M0+, -O2: 19049 to 19552 instructions, 1548 B of code, 216 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
@@ -161,7 +165,7 @@ void free_body_acceleration_jacobian_dense_f64(const free_body_constants_f64 *co
  *            200000 samples of the ranges, 65536 searched from the worst); at 8348 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 1.3e-13 N m (seen
- *            9e-14).
+ *            9.3e-14).
  * Cost: 7 add, 10 sub, 23 mul.
  * On Cortex-M0+, -O2: 9233 to 9541 instructions, 724 B of code, 176 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
@@ -215,7 +219,7 @@ void free_body_angular_momentum_f64(const free_body_constants_f64 *constants, co
  *            rate_absolute; 200000 samples of the ranges, 65536 searched from the worst); at 8348
  *            hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: rate_in_axes 2.4e-14 N m (seen
- *            2.3e-14), rate_absolute 1.2e-13 N m (seen 7.3e-14).
+ *            2.3e-14), rate_absolute 1.2e-13 N m (seen 8.2e-14).
  * Cost: 7 add, 10 sub, 23 mul.
  * On Cortex-M0+, -O2: 9232 to 9638 instructions, 720 B of code, 160 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, rate_seen_from_N, rigid.
@@ -235,7 +239,7 @@ void free_body_angular_momentum_rate_f64(const free_body_constants_f64 *constant
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8348
  *            hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 1.5e-13 J (seen
- *            1e-13).
+ *            1.1e-13).
  * Cost: 2 add, 3 sub, 9 mul.
  * On Cortex-M0+, -O2: 3343 to 3493 instructions, 260 B of code, 112 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.

@@ -76,7 +76,7 @@ int free_body_principal_setup_f32(float I_xx, float I_yy, float I_zz,
  *            200000 samples of the ranges, 65536 searched from the worst); at 8336 hard samples
  *            4.4 u (of omega_dot, thin rod).
  * Bound: proved, absolute, by rounding alone, on the whole ranges: omega_dot 1.7e-05 rad/s^2 (seen
- *            1.2e-05).
+ *            1.4e-05).
  * Cost: 2 add, 1 sub, 9 mul.
  * On Cortex-M0+, -O2: 1265 to 1405 instructions, 128 B of code, 64 B of stack.
  * On Cortex-M4F, -O2: 28 instructions, 112 B of code, 0 B of stack.
@@ -97,7 +97,7 @@ void free_body_principal_acceleration_f32(const free_body_principal_constants_f3
  *            200000 samples of the ranges, 65536 searched from the worst); at 8336 hard samples
  *            3.3 u (of omega_dot, thin rod).
  * Bound: proved, absolute, by rounding alone, on the whole ranges: omega_dot 1.2e-05 rad/s^2 (seen
- *            9.7e-06), jacobian 5.4e-07 (seen 5.4e-07).
+ *            1.1e-05), jacobian 5.4e-07 (seen 5.4e-07).
  * Cost: 3 add, 12 mul.
  * On Cortex-M0+, -O2: 1676 to 1773 instructions, 212 B of code, 80 B of stack.
  * On Cortex-M4F, -O2: 49 instructions, 180 B of code, 4 B of stack.
@@ -168,7 +168,7 @@ void free_body_principal_angular_momentum_f32(const free_body_principal_constant
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8336
  *            hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 5.7e-05 J (seen
- *            3.7e-05).
+ *            4.4e-05).
  * Cost: 2 add, 6 mul.
  * On Cortex-M0+, -O2: 845 to 889 instructions, 88 B of code, 56 B of stack.
  * On Cortex-M4F, -O2: 16 instructions, 64 B of code, 0 B of stack.

@@ -5,6 +5,9 @@
 #include "gyrostat_f64.h"
 
 #include <math.h>
+#undef C_1
+#undef C_2
+#undef C_3
 
 #if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || \
     (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)

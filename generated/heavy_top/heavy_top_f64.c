@@ -5,6 +5,8 @@
 #include "heavy_top_f64.h"
 
 #include <math.h>
+#undef A
+#undef C
 
 #if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || \
     (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)

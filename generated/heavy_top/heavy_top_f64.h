@@ -20,14 +20,24 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 39fe589370198a14.
+ * Body of these files: sha256 5be87d086f8131ca.
  */
 #ifndef HEAVY_TOP_F64_H
 #define HEAVY_TOP_F64_H
 
+#if defined(__SIZEOF_DOUBLE__) && __SIZEOF_DOUBLE__ < 8
+#error "double has fewer than 64 bits here: use the C in float, packages by --precision float"
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* Macros of headers above that are called like names here are put aside until the end of this file. */
+#pragma push_macro("A")
+#undef A
+#pragma push_macro("C")
+#undef C
 
 /* Constants made of parameters only, by heavy_top_setup_f64. */
 typedef struct {
@@ -74,7 +84,7 @@ int heavy_top_setup_f64(double A, double C, double m, double g, double l,
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: coordinate_rates 2.2e-14 rad/s
- *            (seen 1.6e-14), omega_dot 3.7e-13 rad/s^2 (seen 2.4e-13); assumed: sines and cosines
+ *            (seen 1.7e-14), omega_dot 3.7e-13 rad/s^2 (seen 2.8e-13); assumed: sines and cosines
  *            of our own within 0.79 ulp.
  * Singular: at theta = k pi, psi_dot, phi_dot, omega_dot_x, omega_dot_y infinite, no number or
  *            beyond all measure.
@@ -100,8 +110,8 @@ void heavy_top_state_rate_f64(const heavy_top_constants_f64 *constants, double t
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: coordinate_rates 2.7e-14 rad/s
- *            (seen 1.9e-14), omega_dot 4.2e-13 rad/s^2 (seen 3.1e-13), jacobian 2.9e-12 (seen
- *            1.8e-12); assumed: sines and cosines of our own within 0.79 ulp.
+ *            (seen 2e-14), omega_dot 4.2e-13 rad/s^2 (seen 3.3e-13), jacobian 2.9e-12 (seen
+ *            2.1e-12); assumed: sines and cosines of our own within 0.79 ulp.
  * Singular: at theta = k pi, psi_dot, phi_dot, omega_dot_x, omega_dot_y, jacobian infinite, no
  *            number or beyond all measure.
  * Cost: 1 add, 5 sub, 15 mul, 1 div, 4 neg, 1 sin, 1 cos.
@@ -160,6 +170,9 @@ void heavy_top_kinetic_energy_f64(const heavy_top_constants_f64 *constants, cons
  */
 void heavy_top_angular_momentum_f64(const heavy_top_constants_f64 *constants, const double omega[3],
     double angular_momentum[3]);
+
+#pragma pop_macro("A")
+#pragma pop_macro("C")
 
 #ifdef __cplusplus
 }

@@ -3,6 +3,8 @@
  * What each function is given, returns and guarantees is said in propeller_3_blade_f32.h.
  */
 #include "propeller_3_blade_f32.h"
+#undef M
+#undef W
 
 #if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || \
     (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)

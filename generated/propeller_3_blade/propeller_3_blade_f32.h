@@ -13,14 +13,14 @@
  * Use:
  *     propeller_3_blade_constants_f32 constants;
  *     if (propeller_3_blade_setup_f32(12.5F, 1.10000002F, 250.0F, 0.5F, &constants) != 0) { return 1; }
- *     float M[3];
- *     propeller_3_blade_M_f32(&constants, M);
+ *     float own_M[3];
+ *     propeller_3_blade_M_f32(&constants, own_M);
  *
  * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 e0760b6cb33b30c2.
+ * Body of these files: sha256 a6aa2a4ed075f2d5.
  */
 #ifndef PROPELLER_3_BLADE_F32_H
 #define PROPELLER_3_BLADE_F32_H
@@ -28,6 +28,12 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* Macros of headers above that are called like names here are put aside until the end of this file. */
+#pragma push_macro("M")
+#undef M
+#pragma push_macro("W")
+#undef W
 
 /* Constants made of parameters only, by propeller_3_blade_setup_f32. */
 typedef struct {
@@ -67,6 +73,9 @@ int propeller_3_blade_setup_f32(float blade_mass, float blade_length, float p, f
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
 void propeller_3_blade_M_f32(const propeller_3_blade_constants_f32 *constants, float M[3]);
+
+#pragma pop_macro("M")
+#pragma pop_macro("W")
 
 #ifdef __cplusplus
 }

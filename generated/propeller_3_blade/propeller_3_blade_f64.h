@@ -13,21 +13,31 @@
  * Use:
  *     propeller_3_blade_constants_f64 constants;
  *     if (propeller_3_blade_setup_f64(12.5, 1.1, 250.0, 0.5, &constants) != 0) { return 1; }
- *     double M[3];
- *     propeller_3_blade_M_f64(&constants, M);
+ *     double own_M[3];
+ *     propeller_3_blade_M_f64(&constants, own_M);
  *
  * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 2109a32e57c69966.
+ * Body of these files: sha256 7240659c4f513ef2.
  */
 #ifndef PROPELLER_3_BLADE_F64_H
 #define PROPELLER_3_BLADE_F64_H
 
+#if defined(__SIZEOF_DOUBLE__) && __SIZEOF_DOUBLE__ < 8
+#error "double has fewer than 64 bits here: use the C in float, packages by --precision float"
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* Macros of headers above that are called like names here are put aside until the end of this file. */
+#pragma push_macro("M")
+#undef M
+#pragma push_macro("W")
+#undef W
 
 /* Constants made of parameters only, by propeller_3_blade_setup_f64. */
 typedef struct {
@@ -65,6 +75,9 @@ int propeller_3_blade_setup_f64(double blade_mass, double blade_length, double p
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
 void propeller_3_blade_M_f64(const propeller_3_blade_constants_f64 *constants, double M[3]);
+
+#pragma pop_macro("M")
+#pragma pop_macro("W")
 
 #ifdef __cplusplus
 }

@@ -53,6 +53,10 @@
 #ifndef QUADROTOR_F64_H
 #define QUADROTOR_F64_H
 
+#if defined(__SIZEOF_DOUBLE__) && __SIZEOF_DOUBLE__ < 8
+#error "double has fewer than 64 bits here: use the C in float, packages by --precision float"
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -154,8 +158,8 @@ int quadrotor_setup_f64(double m, double I_x, double I_y, double I_z, double d, 
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: p_rate 0 m/s (seen 0),
- *            p_dot_rate 6.6e-14 m/s^2 (seen 2.6e-14), w_rate 9.1e-14 rad/s^2 (seen 4.5e-14),
- *            s_rate 3.6e-12 rad/s^2 (seen 2.4e-12), attitude_hull_rate 1.2e-15 1/s (seen 1e-15);
+ *            p_dot_rate 5.9e-14 m/s^2 (seen 2.8e-14), w_rate 7.4e-14 rad/s^2 (seen 5.4e-14),
+ *            s_rate 3.6e-12 rad/s^2 (seen 3.4e-12), attitude_hull_rate 1.2e-15 1/s (seen 1.1e-15);
  *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001.
  * Cost: 13 add, 22 sub, 49 mul, 2 neg.
  * On Cortex-M0+, -O2: 19879 to 20295 instructions, 1500 B of code, 320 B of stack.
@@ -194,8 +198,8 @@ void quadrotor_state_rate_f64(const quadrotor_constants_f64 *constants, const do
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: p_rate 0 m/s (seen 0),
- *            p_dot_rate 8.7e-14 m/s^2 (seen 2.9e-14), w_rate 9.1e-14 rad/s^2 (seen 4.4e-14),
- *            s_rate 3.6e-12 rad/s^2 (seen 2.4e-12), attitude_hull_rate 1.5e-15 1/s (seen 9.9e-16),
+ *            p_dot_rate 5.9e-14 m/s^2 (seen 3e-14), w_rate 7.5e-14 rad/s^2 (seen 6.1e-14), s_rate
+ *            3.6e-12 rad/s^2 (seen 3.4e-12), attitude_hull_rate 1.2e-15 1/s (seen 1.1e-15),
  *            jacobian 1.9e-12 (seen 1.8e-12); assumed: quaternions given with |q|^2 in 0.999 ..
  *            1.001.
  * Cost: 19 add, 36 sub, 106 mul, 13 neg.
@@ -233,8 +237,8 @@ void quadrotor_state_rate_jacobian_dense_f64(const quadrotor_constants_f64 *cons
  * Error: median 0.83, largest 9.4 u of the largest product or sum in the equation (of energy;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: energy 5.4e-12 J (seen 4e-12);
- *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: energy 5.4e-12 J (seen
+ *            4.5e-12); assumed: quaternions given with |q|^2 in 0.999 .. 1.001.
  * Cost: 23 add, 17 sub, 60 mul.
  * On Cortex-M0+, -O2: 22706 to 23076 instructions, 1516 B of code, 360 B of stack.
  * Rests on: A_is_G, axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass,
@@ -267,7 +271,7 @@ void quadrotor_energy_f64(const quadrotor_constants_f64 *constants, const double
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: gyro_x 5.4e-16 N m (seen
- *            5e-16), gyro_y 5.4e-16 N m (seen 5e-16).
+ *            5.2e-16), gyro_y 5.4e-16 N m (seen 5.2e-16).
  * Cost: 2 add, 7 sub, 12 mul, 1 neg.
  * On Cortex-M0+, -O2: 4920 to 5158 instructions, 408 B of code, 152 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
@@ -303,8 +307,8 @@ void quadrotor_gyro_f64(const quadrotor_constants_f64 *constants, const double w
  *            product of what the step adds, by rounding alone (of p_dot_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: p_next 7.2e-15 m (seen
- *            7.1e-15), p_dot_next 2.7e-15 m/s (seen 1e-15), w_next 3e-15 rad/s (seen 1.3e-15),
- *            s_next 2.1e-13 rad/s (seen 1.5e-13), attitude_hull_next 8.7e-16 (seen 2.8e-16);
+ *            7.1e-15), p_dot_next 2.6e-15 m/s (seen 1.1e-15), w_next 2.8e-15 rad/s (seen 1.4e-15),
+ *            s_next 2.1e-13 rad/s (seen 1.5e-13), attitude_hull_next 7.3e-16 (seen 2.8e-16);
  *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 ..
  *            1.1.
  * Singular: at attitude_hull = 0, attitude_hull_next infinite, no number or beyond all measure.

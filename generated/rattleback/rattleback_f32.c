@@ -5,6 +5,11 @@
 #include "rattleback_f32.h"
 
 #include <math.h>
+#undef A
+#undef B
+#undef C
+#undef D
+#undef W
 
 #if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || \
     (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)

@@ -33,14 +33,30 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 68ef2f98f7041772.
+ * Body of these files: sha256 a51e8cd39dd54301.
  */
 #ifndef RATTLEBACK_F64_H
 #define RATTLEBACK_F64_H
 
+#if defined(__SIZEOF_DOUBLE__) && __SIZEOF_DOUBLE__ < 8
+#error "double has fewer than 64 bits here: use the C in float, packages by --precision float"
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* Macros of headers above that are called like names here are put aside until the end of this file. */
+#pragma push_macro("A")
+#undef A
+#pragma push_macro("B")
+#undef B
+#pragma push_macro("C")
+#undef C
+#pragma push_macro("D")
+#undef D
+#pragma push_macro("W")
+#undef W
 
 /* Constants made of parameters only, by rattleback_setup_f64. */
 typedef struct {
@@ -179,7 +195,7 @@ void rattleback_linearised_f64(const rattleback_constants_f64 *constants, double
  *            energy_of_all; 200000 samples of the ranges, 65536 searched from the worst); at 8336
  *            hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: energy_of_all 1.3e-15 J (seen
- *            6.3e-16); assumed: sines and cosines of our own within 0.79 ulp.
+ *            6.4e-16); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 12 add, 5 sub, 39 mul, 1 div, 1 sqrt, 2 sin, 2 cos.
  * On Cortex-M0+, -O2: 34783 to 35367 instructions, 1852 B of code, 296 B of stack.
  * Rests on: A_is_G, axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
@@ -223,6 +239,12 @@ void rattleback_energy_of_all_f64(const rattleback_constants_f64 *constants, dou
 void rattleback_step_rk4_f64(const rattleback_constants_f64 *constants, double alpha,
     double alpha_dot, double beta, double beta_dot, double W, double time_step, double *alpha_next,
     double *alpha_dot_next, double *beta_next, double *beta_dot_next, double *W_next);
+
+#pragma pop_macro("A")
+#pragma pop_macro("B")
+#pragma pop_macro("C")
+#pragma pop_macro("D")
+#pragma pop_macro("W")
 
 #ifdef __cplusplus
 }

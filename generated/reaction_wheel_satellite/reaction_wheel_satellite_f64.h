@@ -36,6 +36,10 @@
 #ifndef REACTION_WHEEL_SATELLITE_F64_H
 #define REACTION_WHEEL_SATELLITE_F64_H
 
+#if defined(__SIZEOF_DOUBLE__) && __SIZEOF_DOUBLE__ < 8
+#error "double has fewer than 64 bits here: use the C in float, packages by --precision float"
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -111,8 +115,8 @@ int reaction_wheel_satellite_setup_f64(double J_xx, double J_yy, double J_zz, do
  *            200000 samples of the ranges, 65536 searched from the worst); at 8348 hard samples 12
  *            u (of w_y_dot, turned, ill-conditioned).
  * Bound: proved, absolute, by rounding alone, on the whole ranges: w_x_dot 1.7e-15 rad/s^2 (seen
- *            8.2e-16), w_y_dot 1.2e-15 rad/s^2 (seen 6.2e-16), w_z_dot 1.8e-15 rad/s^2 (seen
- *            7.9e-16).
+ *            1e-15), w_y_dot 1.1e-15 rad/s^2 (seen 7.4e-16), w_z_dot 1.7e-15 rad/s^2 (seen
+ *            1.1e-15).
  * Cost: 6 add, 14 sub, 26 mul.
  * On Cortex-M0+, -O2: 10615 to 10966 instructions, 732 B of code, 136 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,

@@ -27,6 +27,10 @@
 #ifndef RIGID_BODY_STEPS_F64_H
 #define RIGID_BODY_STEPS_F64_H
 
+#if defined(__SIZEOF_DOUBLE__) && __SIZEOF_DOUBLE__ < 8
+#error "double has fewer than 64 bits here: use the C in float, packages by --precision float"
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -107,8 +111,8 @@ int rigid_body_steps_setup_f64(double m, double I_xx, double I_yy, double I_zz, 
  *            the ranges, 65536 searched from the worst); at 8282 hard samples 1.5e+03 u (of
  *            attitude_next, turned, ill-conditioned).
  * Bound: proved, absolute, by rounding alone, on the whole ranges: position_next 7.7e-15 m (seen
- *            7.4e-15), attitude_next 3.2e-15 (seen 3e-16), velocity_next 8.3e-15 m/s (seen
- *            3.7e-15), omega_next 2.8e-14 rad/s (seen 1.6e-15); assumed: quaternions given with
+ *            7.4e-15), attitude_next 2.4e-15 (seen 2.8e-16), velocity_next 7.8e-15 m/s (seen
+ *            3.8e-15), omega_next 5.8e-15 rad/s (seen 1.8e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 .. 1.1.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 204 add, 64 sub, 363 mul, 1 div, 4 neg, 1 sqrt.
@@ -144,7 +148,7 @@ void rigid_body_steps_step_rk4_f64(const rigid_body_steps_constants_f64 *constan
  * Error: median 0.37, largest 5.6 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of velocity_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8282 hard samples no more.
- * Bound: not proved: 4143 operations are more than the 2000 tried.
+ * Bound: not proved: 3978 operations are more than the 2000 tried.
  * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.
  * Cost: 2322 add, 460 sub, 3223 mul, 1 div, 250 neg, 1 sqrt.
  * On Cortex-M0+, -O2: 1084207 to 1091065 instructions, 11284 B of code, 38 B of tables, 2432 B of

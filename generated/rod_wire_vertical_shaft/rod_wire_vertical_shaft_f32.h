@@ -16,14 +16,14 @@
  * Use:
  *     rod_wire_vertical_shaft_constants_f32 constants;
  *     if (rod_wire_vertical_shaft_setup_f32(40.0F, 8.0F, 1.0F, 15.0F, 21.0F, &constants) != 0) { return 1; }
- *     float T;
- *     rod_wire_vertical_shaft_T_f32(&constants, &T);
+ *     float own_T;
+ *     rod_wire_vertical_shaft_T_f32(&constants, &own_T);
  *
  * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 512b9534c9b3bc6f.
+ * Body of these files: sha256 858c62b15b31e8d1.
  */
 #ifndef ROD_WIRE_VERTICAL_SHAFT_F32_H
 #define ROD_WIRE_VERTICAL_SHAFT_F32_H
@@ -31,6 +31,14 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* Macros of headers above that are called like names here are put aside until the end of this file. */
+#pragma push_macro("L")
+#undef L
+#pragma push_macro("T")
+#undef T
+#pragma push_macro("W")
+#undef W
 
 /* Constants made of parameters only, by rod_wire_vertical_shaft_setup_f32. */
 typedef struct {
@@ -122,6 +130,10 @@ void rod_wire_vertical_shaft_A_x_f32(const rod_wire_vertical_shaft_constants_f32
  */
 void rod_wire_vertical_shaft_A_z_f32(const rod_wire_vertical_shaft_constants_f32 *constants,
     float *A_z);
+
+#pragma pop_macro("L")
+#pragma pop_macro("T")
+#pragma pop_macro("W")
 
 #ifdef __cplusplus
 }

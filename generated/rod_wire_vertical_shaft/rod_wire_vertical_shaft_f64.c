@@ -6,6 +6,9 @@
 #include "rod_wire_vertical_shaft_f64.h"
 
 #include <math.h>
+#undef L
+#undef T
+#undef W
 
 #if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || \
     (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)

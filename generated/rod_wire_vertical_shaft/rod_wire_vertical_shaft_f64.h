@@ -16,21 +16,33 @@
  * Use:
  *     rod_wire_vertical_shaft_constants_f64 constants;
  *     if (rod_wire_vertical_shaft_setup_f64(40.0, 8.0, 1.0, 15.0, 21.0, &constants) != 0) { return 1; }
- *     double T;
- *     rod_wire_vertical_shaft_T_f64(&constants, &T);
+ *     double own_T;
+ *     rod_wire_vertical_shaft_T_f64(&constants, &own_T);
  *
  * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 1cf143f97b3f9492.
+ * Body of these files: sha256 355fc94dfcc54e81.
  */
 #ifndef ROD_WIRE_VERTICAL_SHAFT_F64_H
 #define ROD_WIRE_VERTICAL_SHAFT_F64_H
 
+#if defined(__SIZEOF_DOUBLE__) && __SIZEOF_DOUBLE__ < 8
+#error "double has fewer than 64 bits here: use the C in float, packages by --precision float"
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* Macros of headers above that are called like names here are put aside until the end of this file. */
+#pragma push_macro("L")
+#undef L
+#pragma push_macro("T")
+#undef T
+#pragma push_macro("W")
+#undef W
 
 /* Constants made of parameters only, by rod_wire_vertical_shaft_setup_f64. */
 typedef struct {
@@ -119,6 +131,10 @@ void rod_wire_vertical_shaft_A_x_f64(const rod_wire_vertical_shaft_constants_f64
  */
 void rod_wire_vertical_shaft_A_z_f64(const rod_wire_vertical_shaft_constants_f64 *constants,
     double *A_z);
+
+#pragma pop_macro("L")
+#pragma pop_macro("T")
+#pragma pop_macro("W")
 
 #ifdef __cplusplus
 }

@@ -5,6 +5,7 @@
 #include "rolling_cone_f64.h"
 
 #include <math.h>
+#undef W
 
 #if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || \
     (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)

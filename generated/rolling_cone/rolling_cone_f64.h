@@ -22,14 +22,22 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 08c0a748bac74b7b.
+ * Body of these files: sha256 cfbed2c5220eba17.
  */
 #ifndef ROLLING_CONE_F64_H
 #define ROLLING_CONE_F64_H
 
+#if defined(__SIZEOF_DOUBLE__) && __SIZEOF_DOUBLE__ < 8
+#error "double has fewer than 64 bits here: use the C in float, packages by --precision float"
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* Macros of headers above that are called like names here are put aside until the end of this file. */
+#pragma push_macro("W")
+#undef W
 
 /* Constants made of parameters only, by rolling_cone_setup_f64. */
 typedef struct {
@@ -110,7 +118,8 @@ void rolling_cone_x_N_f64(const rolling_cone_constants_f64 *constants, double W,
  * In this scene: steady = lever/ground_z - h/cos(a)
  * Error: median 0.31, largest 3 u of the largest product or sum in the equation (of steady; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8336 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: steady 5.6e-16 m (seen 5e-16).
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: steady 5.6e-16 m (seen
+ *            5.3e-16).
  * Cost: 1 add, 2 mul.
  * On Cortex-M0+, -O2: 705 to 777 instructions, 36 B of code, 80 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
@@ -118,6 +127,8 @@ void rolling_cone_x_N_f64(const rolling_cone_constants_f64 *constants, double W,
  *            reference_point, rigid, strong_third_law, third_law.
  */
 void rolling_cone_steady_f64(const rolling_cone_constants_f64 *constants, double W, double *steady);
+
+#pragma pop_macro("W")
 
 #ifdef __cplusplus
 }

@@ -19,7 +19,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 4be23117c678fce1.
+ * Body of these files: sha256 fcd8d51db2f21287.
  */
 #ifndef ROTOR_ON_TURNING_AXES_F32_H
 #define ROTOR_ON_TURNING_AXES_F32_H
@@ -27,6 +27,12 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* Macros of headers above that are called like names here are put aside until the end of this file. */
+#pragma push_macro("A")
+#undef A
+#pragma push_macro("C")
+#undef C
 
 /* Constants made of parameters only, by rotor_on_turning_axes_setup_f32. */
 typedef struct {
@@ -162,6 +168,9 @@ void rotor_on_turning_axes_angular_momentum_rate_f32(const rotor_on_turning_axes
  */
 void rotor_on_turning_axes_kinetic_energy_f32(const rotor_on_turning_axes_constants_f32 *constants,
     float W_x, float W_y, float W_z, float p, float *kinetic_energy);
+
+#pragma pop_macro("A")
+#pragma pop_macro("C")
 
 #ifdef __cplusplus
 }

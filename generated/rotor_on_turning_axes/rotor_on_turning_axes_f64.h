@@ -19,14 +19,24 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 eeae06975a938127.
+ * Body of these files: sha256 022a68aabe9dfa9b.
  */
 #ifndef ROTOR_ON_TURNING_AXES_F64_H
 #define ROTOR_ON_TURNING_AXES_F64_H
 
+#if defined(__SIZEOF_DOUBLE__) && __SIZEOF_DOUBLE__ < 8
+#error "double has fewer than 64 bits here: use the C in float, packages by --precision float"
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* Macros of headers above that are called like names here are put aside until the end of this file. */
+#pragma push_macro("A")
+#undef A
+#pragma push_macro("C")
+#undef C
 
 /* Constants made of parameters only, by rotor_on_turning_axes_setup_f64. */
 typedef struct {
@@ -128,7 +138,7 @@ void rotor_on_turning_axes_angular_momentum_f64(const rotor_on_turning_axes_cons
  *            rate_absolute; 200000 samples of the ranges, 65536 searched from the worst); at 8336
  *            hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: rate_in_axes 7.5e-15 N m (seen
- *            7.5e-15), rate_absolute 2.3e-13 N m (seen 2.2e-13).
+ *            7.5e-15), rate_absolute 2.3e-13 N m (seen 2.3e-13).
  * Cost: 2 add, 2 sub, 7 mul.
  * On Cortex-M0+, -O2: 2629 to 2738 instructions, 224 B of code, 104 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, rate_seen_from_N, rigid.
@@ -157,6 +167,9 @@ void rotor_on_turning_axes_angular_momentum_rate_f64(const rotor_on_turning_axes
  */
 void rotor_on_turning_axes_kinetic_energy_f64(const rotor_on_turning_axes_constants_f64 *constants,
     double W_x, double W_y, double W_z, double p, double *kinetic_energy);
+
+#pragma pop_macro("A")
+#pragma pop_macro("C")
 
 #ifdef __cplusplus
 }

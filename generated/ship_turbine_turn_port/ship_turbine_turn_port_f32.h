@@ -15,14 +15,14 @@
  *     ship_turbine_turn_port_constants_f32 constants;
  *     if (ship_turbine_turn_port_setup_f32(1000.0F, 0.200000003F, 500.0F, 12.0F, 400.0F, 0.600000024F, 0.899999976F,
  *       9.80000019F, &constants) != 0) { return 1; }
- *     float R_A, R_B;
- *     ship_turbine_turn_port_reactions_f32(&constants, &R_A, &R_B);
+ *     float own_R_A, own_R_B;
+ *     ship_turbine_turn_port_reactions_f32(&constants, &own_R_A, &own_R_B);
  *
  * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 f00e96d8e3811ad1.
+ * Body of these files: sha256 672e2890c187346e.
  */
 #ifndef SHIP_TURBINE_TURN_PORT_F32_H
 #define SHIP_TURBINE_TURN_PORT_F32_H
@@ -30,6 +30,14 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* Macros of headers above that are called like names here are put aside until the end of this file. */
+#pragma push_macro("R")
+#undef R
+#pragma push_macro("R_A")
+#undef R_A
+#pragma push_macro("R_B")
+#undef R_B
 
 /* Constants made of parameters only, by ship_turbine_turn_port_setup_f32. */
 typedef struct {
@@ -99,6 +107,10 @@ void ship_turbine_turn_port_reactions_f32(const ship_turbine_turn_port_constants
  */
 void ship_turbine_turn_port_gyro_moment_f32(const ship_turbine_turn_port_constants_f32 *constants,
     float *gyro_moment);
+
+#pragma pop_macro("R")
+#pragma pop_macro("R_A")
+#pragma pop_macro("R_B")
 
 #ifdef __cplusplus
 }

@@ -4,6 +4,9 @@
  * What each function is given, returns and guarantees is said in ship_turbine_turn_port_f64.h.
  */
 #include "ship_turbine_turn_port_f64.h"
+#undef R
+#undef R_A
+#undef R_B
 
 #if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || \
     (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)

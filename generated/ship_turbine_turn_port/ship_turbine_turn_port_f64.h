@@ -15,21 +15,33 @@
  *     ship_turbine_turn_port_constants_f64 constants;
  *     if (ship_turbine_turn_port_setup_f64(1000.0, 0.2, 500.0, 12.0, 400.0, 0.6, 0.9, 9.8, &constants) != 0) { return
  *       1; }
- *     double R_A, R_B;
- *     ship_turbine_turn_port_reactions_f64(&constants, &R_A, &R_B);
+ *     double own_R_A, own_R_B;
+ *     ship_turbine_turn_port_reactions_f64(&constants, &own_R_A, &own_R_B);
  *
  * Outputs but Jacobians may lie over inputs, whose values are read before anything is stored. Angles
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 3d37c96c28bc8f6f.
+ * Body of these files: sha256 a344e23efec006bf.
  */
 #ifndef SHIP_TURBINE_TURN_PORT_F64_H
 #define SHIP_TURBINE_TURN_PORT_F64_H
 
+#if defined(__SIZEOF_DOUBLE__) && __SIZEOF_DOUBLE__ < 8
+#error "double has fewer than 64 bits here: use the C in float, packages by --precision float"
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* Macros of headers above that are called like names here are put aside until the end of this file. */
+#pragma push_macro("R")
+#undef R
+#pragma push_macro("R_A")
+#undef R_A
+#pragma push_macro("R_B")
+#undef R_B
 
 /* Constants made of parameters only, by ship_turbine_turn_port_setup_f64. */
 typedef struct {
@@ -96,6 +108,10 @@ void ship_turbine_turn_port_reactions_f64(const ship_turbine_turn_port_constants
  */
 void ship_turbine_turn_port_gyro_moment_f64(const ship_turbine_turn_port_constants_f64 *constants,
     double *gyro_moment);
+
+#pragma pop_macro("R")
+#pragma pop_macro("R_A")
+#pragma pop_macro("R_B")
 
 #ifdef __cplusplus
 }

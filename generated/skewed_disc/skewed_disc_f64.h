@@ -25,6 +25,10 @@
 #ifndef SKEWED_DISC_F64_H
 #define SKEWED_DISC_F64_H
 
+#if defined(__SIZEOF_DOUBLE__) && __SIZEOF_DOUBLE__ < 8
+#error "double has fewer than 64 bits here: use the C in float, packages by --precision float"
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif

@@ -112,9 +112,9 @@ void sleeping_top_linearised_f32(const sleeping_top_constants_f32 *constants, fl
  * Error: median 0.73, largest 6.7 u of the largest product or sum in the equation (of beta_ddot;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8318 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: alpha_ddot 6.2e-05 rad/s^2
- *            (seen 4.2e-05), beta_ddot 4.3e-05 rad/s^2 (seen 2.9e-05); assumed: sines and cosines
- *            of our own within 0.79 ulp.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: alpha_ddot 6.3e-05 rad/s^2
+ *            (seen 4.5e-05), beta_ddot 4.2e-05 rad/s^2 (seen 3e-05); assumed: sines and cosines of
+ *            our own within 0.79 ulp.
  * Singular: at beta = pi/2 + k pi, alpha_ddot infinite, no number or beyond all measure.
  * Cost: 4 sub, 9 mul, 1 div, 2 sin, 2 cos.
  * On Cortex-M0+, -O2: 8908 to 9070 instructions, 724 B of code, 128 B of stack.
@@ -171,9 +171,9 @@ void sleeping_top_energy_f32(const sleeping_top_constants_f32 *constants, float 
  * Error: median 0.41, largest 7.7 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of alpha_dot_next; 200000 samples
  *            of the ranges, 65536 searched from the worst); at 8246 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: alpha_next 2.4e-08 rad (seen
- *            1.7e-08), alpha_dot_next 1.3e-06 rad/s (seen 5.9e-07), beta_next 2.3e-08 rad (seen
- *            1.7e-08), beta_dot_next 1.2e-06 rad/s (seen 4.6e-07); assumed: sines and cosines of
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: alpha_next 2.5e-08 rad (seen
+ *            1.8e-08), alpha_dot_next 1.4e-06 rad/s (seen 5.4e-07), beta_next 2.4e-08 rad (seen
+ *            1.7e-08), beta_dot_next 1.2e-06 rad/s (seen 4.4e-07); assumed: sines and cosines of
  *            our own within 0.79 ulp.
  * Singular: at beta = pi/2 + k pi, alpha_next, alpha_dot_next, beta_next, beta_dot_next infinite,
  *            no number or beyond all measure.

@@ -25,6 +25,10 @@
 #ifndef SLEEPING_TOP_F64_H
 #define SLEEPING_TOP_F64_H
 
+#if defined(__SIZEOF_DOUBLE__) && __SIZEOF_DOUBLE__ < 8
+#error "double has fewer than 64 bits here: use the C in float, packages by --precision float"
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -110,7 +114,7 @@ void sleeping_top_linearised_f64(const sleeping_top_constants_f64 *constants, do
  *            200000 samples of the ranges, 65536 searched from the worst); at 8318 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: alpha_ddot 1.2e-13 rad/s^2
- *            (seen 8.7e-14), beta_ddot 7.9e-14 rad/s^2 (seen 5.9e-14); assumed: sines and cosines
+ *            (seen 8.3e-14), beta_ddot 7.8e-14 rad/s^2 (seen 5.9e-14); assumed: sines and cosines
  *            of our own within 0.79 ulp.
  * Singular: at beta = pi/2 + k pi, alpha_ddot infinite, no number or beyond all measure.
  * Cost: 4 sub, 9 mul, 1 div, 2 sin, 2 cos.
@@ -166,9 +170,9 @@ void sleeping_top_energy_f64(const sleeping_top_constants_f64 *constants, double
  * Error: median 0.4, largest 6.1 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of alpha_dot_next; 200000 samples
  *            of the ranges, 65536 searched from the worst); at 8246 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: alpha_next 4.4e-17 rad (seen
- *            3.2e-17), alpha_dot_next 2.4e-15 rad/s (seen 8.6e-16), beta_next 4.3e-17 rad (seen
- *            3.2e-17), beta_dot_next 2.2e-15 rad/s (seen 7.2e-16); assumed: sines and cosines of
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: alpha_next 4.7e-17 rad (seen
+ *            3.5e-17), alpha_dot_next 2.5e-15 rad/s (seen 9e-16), beta_next 4.4e-17 rad (seen
+ *            3.3e-17), beta_dot_next 2.2e-15 rad/s (seen 8.5e-16); assumed: sines and cosines of
  *            our own within 0.79 ulp.
  * Singular: at beta = pi/2 + k pi, alpha_next, alpha_dot_next, beta_next, beta_dot_next infinite,
  *            no number or beyond all measure.

@@ -21,14 +21,22 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 a36e286095ef2a8e.
+ * Body of these files: sha256 a330c4d4b56fd769.
  */
 #ifndef TOP_STEADY_PRECESSION_F64_H
 #define TOP_STEADY_PRECESSION_F64_H
 
+#if defined(__SIZEOF_DOUBLE__) && __SIZEOF_DOUBLE__ < 8
+#error "double has fewer than 64 bits here: use the C in float, packages by --precision float"
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* Macros of headers above that are called like names here are put aside until the end of this file. */
+#pragma push_macro("W")
+#undef W
 
 /* Constants made of parameters only, by top_steady_precession_setup_f64. */
 typedef struct {
@@ -65,7 +73,7 @@ int top_steady_precession_setup_f64(double r, double l, double theta, double n, 
  * Error: median 0.52, largest 3.7 u of the largest product or sum in the equation (of steady;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8324 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: steady 4.6e-14 (seen 4.1e-14).
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: steady 4.8e-14 (seen 4.1e-14).
  * Cost: 2 sub, 2 mul.
  * On Cortex-M0+, -O2: 876 to 964 instructions, 56 B of code, 80 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
@@ -74,6 +82,8 @@ int top_steady_precession_setup_f64(double r, double l, double theta, double n, 
  */
 void top_steady_precession_steady_f64(const top_steady_precession_constants_f64 *constants,
     double W, double *steady);
+
+#pragma pop_macro("W")
 
 #ifdef __cplusplus
 }

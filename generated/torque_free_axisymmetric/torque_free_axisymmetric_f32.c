@@ -6,6 +6,11 @@
 #include "torque_free_axisymmetric_f32.h"
 
 #include <math.h>
+#undef A
+#undef A_A
+#undef C
+#undef C_C
+#undef L
 
 #if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || \
     (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)

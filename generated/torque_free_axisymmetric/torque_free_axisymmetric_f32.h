@@ -18,7 +18,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 e44576dbe5175376.
+ * Body of these files: sha256 dcf158157d7d27e1.
  */
 #ifndef TORQUE_FREE_AXISYMMETRIC_F32_H
 #define TORQUE_FREE_AXISYMMETRIC_F32_H
@@ -26,6 +26,18 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* Macros of headers above that are called like names here are put aside until the end of this file. */
+#pragma push_macro("A")
+#undef A
+#pragma push_macro("A_A")
+#undef A_A
+#pragma push_macro("C")
+#undef C
+#pragma push_macro("C_C")
+#undef C_C
+#pragma push_macro("L")
+#undef L
 
 /* Constants made of parameters only, by torque_free_axisymmetric_setup_f32. */
 typedef struct {
@@ -63,7 +75,7 @@ int torque_free_axisymmetric_setup_f32(float A, float C,
  *            200000 samples of the ranges, 65536 searched from the worst); at 8336 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: precession 6.4e-06 rad/s (seen
- *            4.1e-06).
+ *            4.8e-06).
  * Singular: at w_x = w_y = 0, precession infinite, no number or beyond all measure.
  * Cost: 3 add, 7 mul, 1 div, 3 sqrt.
  * On Cortex-M0+, -O2: 2384 to 2452 instructions, 136 B of code, 64 B of stack.
@@ -105,7 +117,7 @@ void torque_free_axisymmetric_body_rate_f32(const torque_free_axisymmetric_const
  *            200000 samples of the ranges, 65536 searched from the worst); at 8336 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: tan_theta 1.1e-07 (seen
- *            6.3e-08).
+ *            7.9e-08).
  * Singular: at w_z = 0, tan_theta infinite, no number or beyond all measure.
  * Cost: 1 add, 5 mul, 1 div, 1 sqrt.
  * On Cortex-M0+, -O2: 1369 to 1426 instructions, 96 B of code, 64 B of stack.
@@ -125,7 +137,7 @@ void torque_free_axisymmetric_tan_theta_f32(const torque_free_axisymmetric_const
  *            200000 samples of the ranges, 65536 searched from the worst); at 8336 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: tan_beta 6.7e-08 (seen
- *            5.6e-08).
+ *            5.1e-08).
  * Singular: at w_z = 0, tan_beta infinite, no number or beyond all measure.
  * Cost: 1 add, 2 mul, 1 div, 1 sqrt.
  * On Cortex-M0+, -O2: 999 to 1045 instructions, 48 B of code, 64 B of stack.
@@ -143,7 +155,7 @@ void torque_free_axisymmetric_tan_beta_f32(float w_x, float w_y, float w_z, floa
  * In this scene: L = sqrt(A^2*(w_x^2 + w_y^2) + C^2*w_z^2)
  * Error: median 0.45, largest 2.9 u of the largest product or sum in the equation (of L; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8336 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: L 1.6e-06 kg m^2/s (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: L 1.7e-06 kg m^2/s (seen
  *            1.4e-06).
  * Cost: 2 add, 6 mul, 1 sqrt.
  * On Cortex-M0+, -O2: 1190 to 1234 instructions, 104 B of code, 64 B of stack.
@@ -152,6 +164,12 @@ void torque_free_axisymmetric_tan_beta_f32(float w_x, float w_y, float w_z, floa
  */
 void torque_free_axisymmetric_L_f32(const torque_free_axisymmetric_constants_f32 *constants,
     float w_x, float w_y, float w_z, float *L);
+
+#pragma pop_macro("A")
+#pragma pop_macro("A_A")
+#pragma pop_macro("C")
+#pragma pop_macro("C_C")
+#pragma pop_macro("L")
 
 #ifdef __cplusplus
 }

@@ -18,14 +18,30 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 fa0ddd8de399c5f2.
+ * Body of these files: sha256 625cc8992907fc5d.
  */
 #ifndef TORQUE_FREE_AXISYMMETRIC_F64_H
 #define TORQUE_FREE_AXISYMMETRIC_F64_H
 
+#if defined(__SIZEOF_DOUBLE__) && __SIZEOF_DOUBLE__ < 8
+#error "double has fewer than 64 bits here: use the C in float, packages by --precision float"
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* Macros of headers above that are called like names here are put aside until the end of this file. */
+#pragma push_macro("A")
+#undef A
+#pragma push_macro("A_A")
+#undef A_A
+#pragma push_macro("C")
+#undef C
+#pragma push_macro("C_C")
+#undef C_C
+#pragma push_macro("L")
+#undef L
 
 /* Constants made of parameters only, by torque_free_axisymmetric_setup_f64. */
 typedef struct {
@@ -62,7 +78,7 @@ int torque_free_axisymmetric_setup_f64(double A, double C,
  *            200000 samples of the ranges, 65536 searched from the worst); at 8336 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: precession 1.2e-14 rad/s (seen
- *            7.8e-15).
+ *            8.9e-15).
  * Singular: at w_x = w_y = 0, precession infinite, no number or beyond all measure.
  * Cost: 3 add, 7 mul, 1 div, 3 sqrt.
  * On Cortex-M0+, -O2: 5989 to 6310 instructions, 196 B of code, 104 B of stack.
@@ -102,7 +118,7 @@ void torque_free_axisymmetric_body_rate_f64(const torque_free_axisymmetric_const
  *            200000 samples of the ranges, 65536 searched from the worst); at 8336 hard samples
  *            4.5 u (of tan_theta, thin disc).
  * Bound: proved, absolute, by rounding alone, on the whole ranges: tan_theta 1.9e-16 (seen
- *            1.3e-16).
+ *            1.4e-16).
  * Singular: at w_z = 0, tan_theta infinite, no number or beyond all measure.
  * Cost: 1 add, 5 mul, 1 div, 1 sqrt.
  * On Cortex-M0+, -O2: 3197 to 3423 instructions, 128 B of code, 88 B of stack.
@@ -138,13 +154,19 @@ void torque_free_axisymmetric_tan_beta_f64(double w_x, double w_y, double w_z, d
  * Error: median 0.43, largest 2.9 u of the largest product or sum in the equation (of L; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8336 hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: L 3e-15 kg m^2/s (seen
- *            2.5e-15).
+ *            2.6e-15).
  * Cost: 2 add, 6 mul, 1 sqrt.
  * On Cortex-M0+, -O2: 3011 to 3186 instructions, 148 B of code, 96 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void torque_free_axisymmetric_L_f64(const torque_free_axisymmetric_constants_f64 *constants,
     double w_x, double w_y, double w_z, double *L);
+
+#pragma pop_macro("A")
+#pragma pop_macro("A_A")
+#pragma pop_macro("C")
+#pragma pop_macro("C_C")
+#pragma pop_macro("L")
 
 #ifdef __cplusplus
 }

@@ -20,7 +20,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 cd9867571ab4612e.
+ * Body of these files: sha256 5244b60583ee8b1f.
  */
 #ifndef UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F32_H
 #define UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F32_H
@@ -28,6 +28,10 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* Macros of headers above that are called like names here are put aside until the end of this file. */
+#pragma push_macro("W")
+#undef W
 
 /* Constants made of parameters only, by unsymmetrical_rotor_in_carrier_axes_setup_f32. */
 typedef struct {
@@ -76,7 +80,7 @@ int unsymmetrical_rotor_in_carrier_axes_setup_f32(float I_xx, float I_yy, float 
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples
  *            6e+05 u (of moment, thin rod).
  * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 0.00035 N m (seen
- *            0.00028); assumed: sines and cosines of our own within 0.79 ulp.
+ *            0.00029); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 3 add, 2 sub, 14 mul, 1 sin, 1 cos.
  * On Cortex-M0+, -O2: 5644 to 6405 instructions, 780 B of code, 136 B of stack.
  * On Cortex-M4F, -O2: 126 to 127 instructions, 568 B of code, 52 B of stack.
@@ -101,8 +105,8 @@ void unsymmetrical_rotor_in_carrier_axes_moment_f32(const unsymmetrical_rotor_in
  * Error: median 0.54, largest 18 u of the largest product or sum in the equation (of moment;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples
  *            5.3e+05 u (of moment, thin rod).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 0.00038 N m (seen
- *            0.00028), jacobian 0.0004 (seen 0.00029); assumed: sines and cosines of our own
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 0.00037 N m (seen
+ *            0.00027), jacobian 0.00042 (seen 0.0003); assumed: sines and cosines of our own
  *            within 0.79 ulp.
  * Cost: 6 add, 7 sub, 27 mul, 1 neg, 1 sin, 1 cos.
  * On Cortex-M0+, -O2: 7754 to 8615 instructions, 1004 B of code, 152 B of stack.
@@ -177,8 +181,8 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_f32(
  * Error: median 0.57, largest 27 u of the largest product or sum in the equation (of rate_in_axes;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples
  *            1.2e+06 u (of rate_in_axes, thin rod).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: rate_in_axes 0.00033 N m (seen
- *            0.0002), rate_absolute 0.00038 N m (seen 0.00028); assumed: sines and cosines of our
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: rate_in_axes 0.00035 N m (seen
+ *            0.00023), rate_absolute 0.00038 N m (seen 0.00029); assumed: sines and cosines of our
  *            own within 0.79 ulp.
  * Cost: 3 add, 3 sub, 16 mul, 1 sin, 1 cos.
  * On Cortex-M0+, -O2: 5932 to 6729 instructions, 824 B of code, 144 B of stack.
@@ -214,6 +218,8 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_rate_f32(
 void unsymmetrical_rotor_in_carrier_axes_kinetic_energy_f32(
     const unsymmetrical_rotor_in_carrier_axes_constants_f32 *constants,
     float gamma, float gamma_dot, float W, float *kinetic_energy);
+
+#pragma pop_macro("W")
 
 #ifdef __cplusplus
 }

@@ -6,6 +6,7 @@
 #include "unsymmetrical_rotor_in_carrier_axes_f64.h"
 
 #include <math.h>
+#undef W
 
 #if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || \
     (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)

@@ -19,14 +19,22 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 812375d9691e0b73.
+ * Body of these files: sha256 abe2acbca9e49cb1.
  */
 #ifndef UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F64_H
 #define UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F64_H
 
+#if defined(__SIZEOF_DOUBLE__) && __SIZEOF_DOUBLE__ < 8
+#error "double has fewer than 64 bits here: use the C in float, packages by --precision float"
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* Macros of headers above that are called like names here are put aside until the end of this file. */
+#pragma push_macro("W")
+#undef W
 
 /* Constants made of parameters only, by unsymmetrical_rotor_in_carrier_axes_setup_f64. */
 typedef struct {
@@ -74,7 +82,7 @@ int unsymmetrical_rotor_in_carrier_axes_setup_f64(double I_xx, double I_yy, doub
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples
  *            7.4e+05 u (of moment, thin rod).
  * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 6.4e-13 N m (seen
- *            4.5e-13); assumed: sines and cosines of our own within 0.79 ulp.
+ *            5.2e-13); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 3 add, 2 sub, 14 mul, 1 sin, 1 cos.
  * On Cortex-M0+, -O2: 14433 to 16160 instructions, 1256 B of code, 216 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
@@ -98,8 +106,8 @@ void unsymmetrical_rotor_in_carrier_axes_moment_f64(const unsymmetrical_rotor_in
  * Error: median 0.54, largest 17 u of the largest product or sum in the equation (of moment;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples
  *            5.8e+05 u (of moment, thin rod).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 7e-13 N m (seen
- *            5.1e-13), jacobian 7.4e-13 (seen 5.3e-13); assumed: sines and cosines of our own
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 6.8e-13 N m (seen
+ *            5.1e-13), jacobian 7.7e-13 (seen 5.3e-13); assumed: sines and cosines of our own
  *            within 0.79 ulp.
  * Cost: 6 add, 7 sub, 27 mul, 1 neg, 1 sin, 1 cos.
  * On Cortex-M0+, -O2: 19536 to 21349 instructions, 1628 B of code, 264 B of stack.
@@ -171,8 +179,8 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_f64(
  * Error: median 0.57, largest 23 u of the largest product or sum in the equation (of rate_in_axes;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples
  *            1.2e+06 u (of rate_in_axes, thin rod).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: rate_in_axes 6.1e-13 N m (seen
- *            3.9e-13), rate_absolute 6.9e-13 N m (seen 5.1e-13); assumed: sines and cosines of our
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: rate_in_axes 6.4e-13 N m (seen
+ *            4.1e-13), rate_absolute 7e-13 N m (seen 5.2e-13); assumed: sines and cosines of our
  *            own within 0.79 ulp.
  * Cost: 3 add, 3 sub, 16 mul, 1 sin, 1 cos.
  * On Cortex-M0+, -O2: 15201 to 16919 instructions, 1316 B of code, 240 B of stack.
@@ -206,6 +214,8 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_rate_f64(
 void unsymmetrical_rotor_in_carrier_axes_kinetic_energy_f64(
     const unsymmetrical_rotor_in_carrier_axes_constants_f64 *constants,
     double gamma, double gamma_dot, double W, double *kinetic_energy);
+
+#pragma pop_macro("W")
 
 #ifdef __cplusplus
 }

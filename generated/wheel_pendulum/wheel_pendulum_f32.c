@@ -5,6 +5,7 @@
 #include "wheel_pendulum_f32.h"
 
 #include <math.h>
+#undef T
 
 #if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || \
     (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)

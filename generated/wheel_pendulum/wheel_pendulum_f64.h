@@ -24,14 +24,22 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 c2dd84678cdffdba.
+ * Body of these files: sha256 c2459f2a65f19612.
  */
 #ifndef WHEEL_PENDULUM_F64_H
 #define WHEEL_PENDULUM_F64_H
 
+#if defined(__SIZEOF_DOUBLE__) && __SIZEOF_DOUBLE__ < 8
+#error "double has fewer than 64 bits here: use the C in float, packages by --precision float"
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* Macros of headers above that are called like names here are put aside until the end of this file. */
+#pragma push_macro("T")
+#undef T
 
 /* Constants made of parameters only, by wheel_pendulum_setup_f64. */
 typedef struct {
@@ -86,7 +94,7 @@ int wheel_pendulum_setup_f64(double m_p, double m_r, double l_p, double l_r, dou
  *            theta_dot_rate; 200000 samples of the ranges, 65536 searched from the worst); at 120
  *            hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: theta_rate 0 rad/s (seen 0),
- *            theta_dot_rate 6.5e-14 rad/s^2 (seen 4.3e-14), s_rate 1.7e-12 rad/s^2 (seen 1.3e-12);
+ *            theta_dot_rate 6.4e-14 rad/s^2 (seen 4.7e-14), s_rate 1.5e-12 rad/s^2 (seen 1.3e-12);
  *            assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 2 sub, 4 mul, 1 sin.
  * On Cortex-M0+, -O2: 11090 to 12739 instructions, 1024 B of code, 168 B of stack.
@@ -113,7 +121,7 @@ void wheel_pendulum_state_rate_f64(const wheel_pendulum_constants_f64 *constants
  *            theta_dot_rate; 200000 samples of the ranges, 65536 searched from the worst); at 120
  *            hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: theta_rate 0 rad/s (seen 0),
- *            theta_dot_rate 6.4e-14 rad/s^2 (seen 4.6e-14), s_rate 1.3e-12 rad/s^2 (seen 1.3e-12),
+ *            theta_dot_rate 6.4e-14 rad/s^2 (seen 4.9e-14), s_rate 1.5e-12 rad/s^2 (seen 1.3e-12),
  *            jacobian 3.7e-12 (seen 3.6e-12); assumed: sines and cosines of our own within 0.79
  *            ulp.
  * Cost: 2 sub, 5 mul, 1 neg, 1 sin, 1 cos.
@@ -180,7 +188,7 @@ void wheel_pendulum_linearised_f64(const wheel_pendulum_constants_f64 *constants
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: energy 7.3e-15 J (seen
- *            5.6e-15); assumed: sines and cosines of our own within 0.79 ulp.
+ *            5.7e-15); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 3 add, 5 mul, 1 cos.
  * On Cortex-M0+, -O2: 11426 to 13138 instructions, 1040 B of code, 176 B of stack.
  * Rests on: A_is_G, A_is_fixed, axes_are_orthonormal, body_triad, body_triad_is_orthonormal,
@@ -206,9 +214,9 @@ void wheel_pendulum_energy_f64(const wheel_pendulum_constants_f64 *constants, do
  * Error: median 0.36, largest 9.7e+02 u of the largest component, before or after, or of the
  *            largest product of what the step adds, by rounding alone (of theta_dot_next; 200000
  *            samples of the ranges, 65536 searched from the worst); at 48 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: theta_next 4.5e-16 rad (seen
- *            3.3e-16), theta_dot_next 4.6e-15 rad/s (seen 3e-15), s_next 1.7e-13 rad/s (seen
- *            9.6e-14); assumed: sines and cosines of our own within 0.79 ulp.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: theta_next 4.8e-16 rad (seen
+ *            3.4e-16), theta_dot_next 4.5e-15 rad/s (seen 3.1e-15), s_next 1.4e-13 rad/s (seen
+ *            1e-13); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 18 add, 8 sub, 29 mul, 4 sin.
  * On Cortex-M0+, -O2: 49582 to 56060 instructions, 1648 B of code, 320 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
@@ -217,6 +225,8 @@ void wheel_pendulum_energy_f64(const wheel_pendulum_constants_f64 *constants, do
 void wheel_pendulum_step_rk4_f64(const wheel_pendulum_constants_f64 *constants, double theta,
     double theta_dot, double s, double T, double time_step, double *theta_next,
     double *theta_dot_next, double *s_next);
+
+#pragma pop_macro("T")
 
 #ifdef __cplusplus
 }
