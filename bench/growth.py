@@ -75,8 +75,10 @@ def picture(kinds: Mapping[str, Sequence[Grown]]) -> str:
         for axes, says in ((flops, "operations"), (errors, "largest error, u"),
                            (seconds, "seconds of CPU")):  # fmt: skip
             axes.set(xlabel="rods", ylabel=says, ylim=(0, None))
+            axes.xaxis.get_major_locator().set_params(integer=True)
             axes.spines[["top", "right"]].set_visible(False)
-        flops.legend(frameon=False, fontsize=7)
+        handles = flops.get_legend_handles_labels()
+        drawn.legend(*handles, loc="outside upper center", ncols=4, frameon=False, fontsize=7)
         out = io.StringIO()
         drawn.savefig(out, format="svg", metadata={"Date": None, "Creator": None})
     return "\n".join(line.rstrip() for line in out.getvalue().splitlines()) + "\n"
