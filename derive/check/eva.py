@@ -32,8 +32,8 @@ from derive.program.precision import PRECISIONS, Precision
 from derive.program.program import Program
 from derive.scene.declaration import DeriveError
 from derive.verify.proved.bounds import ends_in_floats
-from derive.verify.proved.cut import UNIT
 from derive.verify.proved.regular import PairOperation, Sector, pair_operations, sectors
+from derive.verify.proved.sphere import UNIT
 
 TOOL = "frama-c"
 HOW_TO_GET_IT = f"check: --eva needs {TOOL}; on Debian: apt-get install frama-c-base gcc"

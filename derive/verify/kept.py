@@ -33,7 +33,7 @@ PROVING = (
     *("program/arithmetic", "program/own_sine", "program/pair_sine", "program/pairs"),
     *("verify/columns", "verify/draw", "verify/scale"),
     *(f"verify/proved/{name}" for name in ("bounds", "cut", "enclosed", "ranges", "traits")),
-    *(f"verify/proved/{name}" for name in ("seen", "slopes", "unfolded")),
+    *(f"verify/proved/{name}" for name in ("seen", "slopes", "sphere", "unfolded")),
 )
 """The modules that bounds are proved by, and seen beside."""
 

@@ -17,9 +17,10 @@ from derive.program.program import Bound, Program, Quantity
 from derive.verify.columns import planned
 from derive.verify.draw import Dice, Sampled
 from derive.verify.measure import upwards
-from derive.verify.proved.cut import UNIT, Cells, Cutting, Region
+from derive.verify.proved.cut import Cells, Cutting, Region
 from derive.verify.proved.enclosed import BROAD
 from derive.verify.proved.seen import SEARCH, Search, seen
+from derive.verify.proved.sphere import UNIT
 from derive.verify.proved.traits import Traits, choice_name, traits
 from derive.verify.proved.unfolded import Operation, pruned, unfolded
 from derive.verify.scale import measured_outputs

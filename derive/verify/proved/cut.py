@@ -5,8 +5,7 @@ Nothing is left out when it ends early: a bound of all is the largest of its par
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property, reduce
-from operator import add
+from functools import cached_property
 
 import numpy as np
 
@@ -14,16 +13,11 @@ from derive.verify.draw import Dice
 from derive.verify.operators import Column
 from derive.verify.proved.enclosed import Enclosed, enclosed
 from derive.verify.proved.slopes import shifts
+from derive.verify.proved.sphere import of_about_unit_length, on_the_sphere
 from derive.verify.proved.traits import Traits
 
 TIGHT = 1.1
 """A bound is no more than this of one at a point: nothing is left to cut for."""
-UNIT = (0.999, 1.001)
-"""Of the squared length of a quaternion that is given."""
-NARROWER = 1e-6
-"""As much of a length is kept from these ends, more than floats round."""
-MARGIN = 1e-12
-"""More than rounding takes from ends that are found by roots."""
 FINEST = 4
 TRIED_AT = 512
 """Points that a climb to the largest bound begins with, and takes in each of its turns."""
@@ -95,7 +89,7 @@ class Cutting:
 
     def valued(self, lows: Column, highs: Column) -> Cells:
         """Return parts with their bounds, those that hold nothing left out."""
-        lows, highs = self._on_the_sphere(lows, highs)
+        lows, highs = on_the_sphere(self.box.quaternions, lows, highs)
         rows = len(self.traits.trace.results)
         step = max(1, FULL // rows)
         each = [self._valued(lows[:, n : n + step], highs[:, n : n + step])
@@ -188,24 +182,11 @@ class Cutting:
         for _ in range(FINEST if self.box.quaternions else 0):
             finer = ends
             for k in (k for places in self.box.quaternions for k in places):
-                finer = self._on_the_sphere(*_in_two(finer, k))
+                finer = on_the_sphere(self.box.quaternions, *_in_two(finer, k))
             if finer[0].shape[1] > min(MOST / 4, START * self.work / self.price):
                 break
             ends = finer
         return ends
-
-    def _on_the_sphere(self, lows: Column, highs: Column) -> tuple[Column, Column]:
-        """Return boxes without those that hold no unit quaternion, each as small as holds all."""
-        fits = np.ones(lows.shape[1], dtype=bool)
-        lows, highs = lows.copy(), highs.copy()
-        for places in self.box.quaternions:
-            low, high = _squares(lows[list(places)], highs[list(places)])
-            fits &= (low <= UNIT[1]) & (high >= UNIT[0])
-            for place in places:
-                others = [k for k in places if k != place]
-                _narrow(lows, highs, place, _squares(lows[others], highs[others]))
-        fits &= np.all(lows <= highs, axis=0)
-        return lows[:, fits], highs[:, fits]
 
     def _halved(self, parts: Cells) -> Cells:
         """Return parts cut in two, each where that serves the first of them best."""
@@ -260,18 +241,6 @@ def _first(points: Column, most: Column) -> tuple[Column, Column]:
     return points[:, first], most[first]
 
 
-def of_about_unit_length(each: Column) -> Column:
-    """Return vectors, a column each, as little longer or shorter as brings them near unit length.
-
-    >>> of_about_unit_length(np.array([[3.0], [4.0]])).round(4)
-    array([[0.6003],
-           [0.8004]])
-    """
-    size = np.sqrt(reduce(add, (x * x for x in each)))
-    least, most = np.sqrt(UNIT[0]) * (1 + NARROWER), np.sqrt(UNIT[1]) * (1 - NARROWER)
-    return np.asarray(each * (np.clip(size, least, most) / np.where(size > 0, size, 1.0)))
-
-
 def _in_two(ends: tuple[Column, Column], k: int) -> tuple[Column, Column]:
     """Return boxes cut in two along a side."""
     middle = (ends[0][k] + ends[1][k]) / 2
@@ -289,23 +258,3 @@ def _width(found: Enclosed) -> Column:
     operands = found.traits.trace.steps[blamed].operands
     low, high = found.ranges[operands[-1] if operands else blamed]
     return np.asarray(high - low)
-
-
-def _squares(lows: Column, highs: Column) -> tuple[Column, Column]:
-    """Return the range of the squared length of vectors in boxes."""
-    across = (lows <= 0) & (highs >= 0)
-    most = np.maximum(np.abs(lows), np.abs(highs))
-    least = np.where(across, 0.0, np.minimum(np.abs(lows), np.abs(highs)))
-    low, high = np.zeros(lows.shape[1]), np.zeros(lows.shape[1])
-    for a, b in zip(least, most, strict=True):
-        low, high = low + a * a, high + b * b
-    return low, high
-
-
-def _narrow(lows: Column, highs: Column, place: int, others: tuple[Column, Column]) -> None:
-    """Make a side of boxes as short as holds all unit quaternions, the others' squares known."""
-    most = np.sqrt(np.maximum(UNIT[1] - others[0], 0.0)) * (1 + MARGIN)
-    least = np.sqrt(np.maximum(UNIT[0] - others[1], 0.0)) * (1 - MARGIN)
-    low, high = np.maximum(lows[place], -most), np.minimum(highs[place], most)
-    lows[place] = np.where(low > -least, np.maximum(low, least), low)
-    highs[place] = np.where(high < least, np.minimum(high, -least), high)

@@ -16,7 +16,8 @@ from derive.program.program import Program, placed
 from derive.verify.columns import Plan, arithmetics, found_and_true, supplied
 from derive.verify.draw import Dice, Sampled, admitted, drawn
 from derive.verify.operators import Column
-from derive.verify.proved.cut import Peaks, of_about_unit_length
+from derive.verify.proved.cut import Peaks
+from derive.verify.proved.sphere import of_about_unit_length
 from derive.verify.scale import measured_outputs
 
 
