@@ -13,7 +13,7 @@ from derive.verify.draw import Dice
 from derive.verify.operators import Column
 from derive.verify.proved.enclosed import Enclosed, enclosed
 from derive.verify.proved.slopes import shifts
-from derive.verify.proved.sphere import of_about_unit_length, on_the_sphere
+from derive.verify.proved.sphere import near_the_sphere, of_about_unit_length
 from derive.verify.proved.traits import Traits
 
 TIGHT = 1.1
@@ -89,7 +89,7 @@ class Cutting:
 
     def valued(self, lows: Column, highs: Column) -> Cells:
         """Return parts with their bounds, those that hold nothing left out."""
-        lows, highs = on_the_sphere(self.box.quaternions, lows, highs)
+        lows, highs = near_the_sphere(self.box.quaternions, lows, highs)
         rows = len(self.traits.trace.results)
         step = max(1, FULL // rows)
         each = [self._valued(lows[:, n : n + step], highs[:, n : n + step])
@@ -182,7 +182,7 @@ class Cutting:
         for _ in range(FINEST if self.box.quaternions else 0):
             finer = ends
             for k in (k for places in self.box.quaternions for k in places):
-                finer = on_the_sphere(self.box.quaternions, *_in_two(finer, k))
+                finer = near_the_sphere(self.box.quaternions, *_in_two(finer, k))
             if finer[0].shape[1] > min(MOST / 4, START * self.work / self.price):
                 break
             ends = finer

@@ -48,7 +48,7 @@ ABOUT = 20
 
 
 @dataclass(frozen=True)
-class Searched:
+class Hunt:
     """What a search moves: what a function rests on alone, quaternions of about unit length."""
 
     of: Sampled
@@ -59,7 +59,7 @@ class Searched:
         """Return how far each measured output is off at samples: the largest of its components."""
         by, outputs = arithmetics(self.of.precision.dtype), measured_outputs(self.plan.program)
         with np.errstate(all="ignore"):
-            at = supplied(self.of.setup, named(self.of, rows), by)
+            at = supplied(self.of.setup, by_component(self.of, rows), by)
             each = np.array([np.abs(by.off(f, t)) for f, t in found_and_true(self.plan, at, by)])
         each = np.where(np.isfinite(each), each, 0.0)
         return np.array([each[span].max(axis=0) for _, span in outputs])
@@ -91,7 +91,7 @@ class Searched:
         return self.fitting(rows, start)
 
 
-def named(of: Sampled, rows: Column) -> dict[str, Column]:
+def by_component(of: Sampled, rows: Column) -> dict[str, Column]:
     """Return samples by component, remainders as parts of their states, as floats."""
     dtype = of.precision.dtype
     own: dict[str, Column] = dict(zip(of.names, rows.astype(dtype), strict=True))
@@ -111,15 +111,15 @@ def seen(of: Sampled, plan: Plan, peaks: Sequence[Peaks], by: Search) -> list[fl
     by, name = by.of(plan.program), plan.program.name
     dice = Dice(f"derive: {of.library.scene.name} {of.precision.name} seen {name}")
     met = {n for each in peaks for n in each.names}
-    sought = Searched(of, plan, np.flatnonzero([n in met for n in of.names]))
+    hunt = Hunt(of, plan, np.flatnonzero([n in met for n in of.names]))
     start = drawn(of, dice, by.samples)
-    every = [sought.fitting(start, start), *(_at(sought, dice, each, by) for each in peaks)]
+    every = [hunt.fitting(start, start), *(_at(hunt, dice, each, by) for each in peaks)]
     rows = np.concatenate(every, axis=1)
-    found = sought.gaps(rows)
+    found = hunt.gaps(rows)
     best, kept = found.max(axis=1), _worst(rows, found, by.kept)
-    for turn in range(by.rounds if len(sought.moved) else 0):
-        rows = np.concatenate([kept, sought.beside(dice, kept, by, turn / by.rounds)], axis=1)
-        found = sought.gaps(rows)
+    for turn in range(by.rounds if len(hunt.moved) else 0):
+        rows = np.concatenate([kept, hunt.beside(dice, kept, by, turn / by.rounds)], axis=1)
+        found = hunt.gaps(rows)
         best, kept = np.maximum(best, found.max(axis=1)), _worst(rows, found, by.kept)
     return [float(x) for x in best]
 
@@ -130,17 +130,17 @@ def _worst(rows: Column, found: Column, kept: int) -> Column:
     return rows[:, np.unique(np.concatenate(each))]
 
 
-def _at(sought: Searched, dice: Dice, peaks: Peaks, by: Search) -> Column:
+def _at(hunt: Hunt, dice: Dice, peaks: Peaks, by: Search) -> Column:
     """Return samples about points, or how it rounds just there would decide who is kept.
 
     Of a remainder, whose sample is a part of its state, any.
     """
     points = np.repeat(peaks.points, ABOUT, axis=1)
-    start = drawn(sought.of, dice, points.shape[1])
+    start = drawn(hunt.of, dice, points.shape[1])
     rows = start.copy()
     for name, row in zip(peaks.names, points, strict=True):
-        if name in sought.of.names and not name.startswith(REMAINDER):
-            rows[sought.of.names.index(name)] = row
-    rows, count = sought.fitting(rows, start), points.shape[1]
+        if name in hunt.of.names and not name.startswith(REMAINDER):
+            rows[hunt.of.names.index(name)] = row
+    rows, count = hunt.fitting(rows, start), points.shape[1]
     fine = by.finest * (1 + 3 * dice.uniform(count)) / 4
-    return sought.shaken(dice, rows, fine, np.ones((len(sought.moved), count), bool))
+    return hunt.shaken(dice, rows, fine, np.ones((len(hunt.moved), count), bool))

@@ -16,7 +16,7 @@ MARGIN = 1e-12
 """More than rounding takes from ends that are found by roots."""
 
 
-def on_the_sphere(
+def near_the_sphere(
     quaternions: Sequence[Sequence[int]], lows: Column, highs: Column
 ) -> tuple[Column, Column]:
     """Return boxes without those that hold no unit quaternion, each as small as holds all."""
