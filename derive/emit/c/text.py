@@ -14,6 +14,7 @@ from derive.emit.c.status import status
 from derive.emit.lines import SIGNS, Language, written
 from derive.emit.operators import SINES, WRITTEN, literal, patterns
 from derive.emit.sines import TOGETHER, together
+from derive.lower.order import with_values_read_soon
 from derive.program.arithmetic import TRUTHS, pair_of
 from derive.program.indexed import Arrays, Assign, Even, Index, Integers, Loop, Row
 from derive.program.precision import Precision
@@ -54,6 +55,8 @@ def places(quantities: tuple[Quantity, ...]) -> dict[str, str]:
 
 def float_body(program: Program, scene: str, precision: Precision) -> list[str]:
     """Return the lines between the braces of a hot function."""
+    if _has_jacobian(program):  # entries are stored at once: values that live are what it costs
+        program = with_values_read_soon(program)
     place = places(program.inputs)
     place |= {n: literal(q[precision.bits], precision) for n, q in program.numbers.items()}
     loads, loaded = _loads(program, place, precision)
@@ -84,8 +87,13 @@ def float_body(program: Program, scene: str, precision: Precision) -> list[str]:
 
 def is_long(program: Program) -> bool:
     """Tell whether a function's values are more than registers hold, and few live at once."""
-    jacobian = any(q.name == MATRIX for q in program.outputs)
-    return jacobian and not program.has_arrays and len(program.ops) >= LONG
+    return _has_jacobian(program) and len(program.ops) >= LONG
+
+
+def _has_jacobian(program: Program) -> bool:
+    """Tell whether a function gives a Jacobian by operations in any order."""
+    ordered = program.has_arrays or any(not isinstance(line, Op) for line in program.ops)
+    return not ordered and any(q.name == MATRIX for q in program.outputs)
 
 
 def _loads(
