@@ -27,7 +27,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 0c658ddbc4134fcd.
+ * Body of these files: sha256 b914377727324406.
  */
 #ifndef ACROBOT_F32_H
 #define ACROBOT_F32_H

@@ -25,7 +25,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 5a5e33b7db610fc6.
+ * Body of these files: sha256 99da905931b6c02a.
  */
 #ifndef ACROBOT_F64_H
 #define ACROBOT_F64_H

@@ -27,7 +27,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 4b86ad449b6c968d.
+ * Body of these files: sha256 2ef913c257a7ae81.
  */
 #ifndef CART_PENDULUM_F32_H
 #define CART_PENDULUM_F32_H

@@ -25,7 +25,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 167dbeb2b1f990d3.
+ * Body of these files: sha256 b9c7fb56703c31e6.
  */
 #ifndef CART_PENDULUM_F64_H
 #define CART_PENDULUM_F64_H
