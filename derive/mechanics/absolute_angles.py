@@ -22,7 +22,7 @@ NOT_TURNED: Rotation = (Integer(1), Integer(0))
 
 def absolute_angles(machine: Links) -> "AbsoluteAngles | None":
     """Return the equations of links about parallel axes, None if some are not parallel."""
-    if machine.drives or len({link.axis for link in machine.links}) != 1:
+    if not machine.plain or len({link.axis for link in machine.links}) != 1:
         return None
     found = AbsoluteAngles(machine, MassMatrix())
     found.assemble()
@@ -67,8 +67,7 @@ class AbsoluteAngles:
             for inner, outer in self._pairs(k):
                 self._pair(inner, outer, k)
             self._drifts(k)
-        for m, drift in self.machine.carried:
-            system.translate(m, drift, self.machine.gravity)
+        system.still(self.machine)
         for push in self.machine.pushes:
             self._pushed(push)
         for k, moment in self.machine.motors.items():

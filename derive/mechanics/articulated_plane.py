@@ -55,7 +55,7 @@ def articulated_plane(machine: Links, order: Sequence[Symbol]) -> dict[Symbol, E
 
     order : in which unknowns are solved for that turn nothing
     """
-    if machine.drives or len({link.axis for link in machine.links}) != 1:
+    if not machine.plain or len({link.axis for link in machine.links}) != 1:
         return None
     return _Articulated(machine, MassMatrix(), machine.links[0].axis).solved(order)
 
@@ -83,8 +83,7 @@ class _Articulated:
         self._act()
         for k in reversed(range(len(links))):
             self._inward(k)
-        for m, drift in self.machine.carried:
-            system.translate(m, drift, self.machine.gravity)
+        system.still(self.machine)
         self.system, base = system.solved([u for u in order if u in system.right])
         own = self._outward(base)
         return {**self.system.definitions, **base, **own}

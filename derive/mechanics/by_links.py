@@ -13,11 +13,12 @@ from derive.mechanics.articulated import articulated
 from derive.mechanics.articulated_plane import articulated_plane
 from derive.mechanics.held_together import held_together
 from derive.mechanics.implied import Implied, by_passes, by_rows
-from derive.mechanics.links import Links, links
+from derive.mechanics.links import Links
 from derive.mechanics.mechanism import Mechanism
 from derive.mechanics.probe import NOTHING, PROBES, random_probe
 from derive.mechanics.problem import Problem, answered
 from derive.mechanics.recursion import driven, recursion
+from derive.mechanics.survey import links
 from derive.mechanics.words import Words
 
 ARTICULATED = "articulated bodies"
@@ -43,7 +44,7 @@ def by_links(
         ways = ((how, own, None) for how, own in held_together(mechanism, sought))
     else:
         machine = links(mechanism.answers.frames, sought)
-        if machine is None or not machine.links or machine.composed:
+        if machine is None or not machine.links:
             return
         if sought not in (machine.free, machine.driving):
             return
@@ -65,11 +66,11 @@ def _solved(
     if not machine.free:
         yield "recursion", driven(machine), None
         return
-    if machine.drives or any(link.unknown is None for link in machine.links):
+    if machine.drives:
         return
-    turning = {link.unknown for link in machine.links}
-    others = [u for u in unknowns if u not in turning]
-    yield ARTICULATED, articulated_plane(machine, others) or articulated(machine, others), None
+    others = [u for u in unknowns if u not in machine.turning]
+    if machine.plain:
+        yield ARTICULATED, articulated_plane(machine, others) or articulated(machine, others), None
     absolute, system = absolute_angles(machine), recursion(machine)
     for order in _orders(machine, unknowns):
         if absolute is not None:
@@ -87,7 +88,7 @@ def _pairs(machine: Links) -> int:
 
 def _orders(machine: Links, unknowns: Sequence[Symbol]) -> list[tuple[Symbol, ...]]:
     """Return orders to solve in: from the leaves, with what does not turn last or first."""
-    leaves = [link.unknown for link in reversed(machine.links)]
+    leaves = machine.turning
     others = [u for u in unknowns if u not in leaves]
     return list(dict.fromkeys([(*leaves, *others), (*others, *leaves), (*others, *leaves[::-1])]))
 

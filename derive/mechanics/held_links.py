@@ -42,7 +42,7 @@ def with_forces(
     system: MassMatrix, rows: Sequence[HeldCondition], order: Sequence[Symbol]
 ) -> tuple[MassMatrix, LinearSum]:
     """Return what is on the way to accelerations and the forces that hold them, masses first."""
-    own = MassMatrix(dict(system.definitions), dict(system.entries), dict(system.right))
+    own = system.copied()
     for row in rows:
         for u, slope in row.form.items():
             if u is not ONE:
@@ -57,7 +57,7 @@ def with_what_is_left(
     pivots: Sequence[Elimination], forces: Sequence[Symbol],
 ) -> tuple[MassMatrix, LinearSum]:  # fmt: skip
     """Return accelerations, those that follow put into the others, and forces if there are any."""
-    own = MassMatrix(dict(system.definitions), dict(system.entries), dict(system.right))
+    own = system.copied()
     forms = _solved(own, [row.form for row in rows], pivots)
     left = put_into(own, forms, [u for u in order if u not in forms])
     made, found = left.solved([u for u in order if u not in forms])
@@ -71,7 +71,7 @@ def put_into(
     own: MassMatrix, forms: Mapping[Symbol, LinearSum], left: Sequence[Symbol]
 ) -> MassMatrix:
     """Return the mass matrix and the right side of what is left, in which the others follow."""
-    found = MassMatrix(own.definitions)
+    found = MassMatrix(own.definitions, named=own.named)
 
     def entry(a: Symbol, b: Symbol) -> Expr:
         return own.entries.get((a, b), Integer(0))

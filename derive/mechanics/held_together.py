@@ -5,8 +5,10 @@ from dataclasses import replace
 
 from sympy import Expr, Integer, Symbol
 
+from derive.lecture.turning import unit_vector
 from derive.mechanics.absolute_angles import absolute_angles, relative
 from derive.mechanics.box import Box, ranges
+from derive.mechanics.frames import ZERO
 from derive.mechanics.held_links import (
     CLEAR,
     ONE,
@@ -19,15 +21,18 @@ from derive.mechanics.held_links import (
     with_forces,
     with_what_is_left,
 )
-from derive.mechanics.links import BASE, Link, Links, links
+from derive.mechanics.links import BASE, Drift, Link, Links
 from derive.mechanics.mass_matrix import MassMatrix
 from derive.mechanics.mechanism import Mechanism
 from derive.mechanics.onto import Doubles
 from derive.mechanics.recursion import recursion
+from derive.mechanics.survey import links
 from derive.mechanics.sweep import Sweep, matrices, sweep_at, weakest
 
 ABSOLUTE, RELATIVE = "absolute angles", "recursion"
 SIZES = (1, 2), (2, 1)
+HeldWay = tuple[str, MassMatrix, bool]
+"""How, a mass matrix with its right side, and whether its unknowns are absolute angles."""
 HeldWays = Iterator[tuple[str, Mapping[Symbol, Expr]]]
 
 
@@ -36,7 +41,7 @@ def held_together(mechanism: Mechanism, sought: frozenset[Symbol]) -> HeldWays:
     sheet = mechanism.answers.frames.sheet
     free = frozenset(sheet.symbols[m.unknown] for m in mechanism.scene.moving if m.free)
     machine = links(mechanism.answers.frames, free)
-    if machine is None or not machine.links or machine.motion != free or machine.drives:
+    if machine is None or not machine.links or machine.free != free or machine.drives:
         return
     rows = []
     for c in mechanism.held.kept:
@@ -45,34 +50,38 @@ def held_together(mechanism: Mechanism, sought: frozenset[Symbol]) -> HeldWays:
         rows.append(HeldCondition({**slopes, ONE: rest}, force))
     if not rows or not sought or not sought <= free | {row.force for row in rows}:
         return
-    machine = _all_turning(machine)
+    for way in _ways(machine):
+        yield from _solved(mechanism, machine, way, rows, sought)
+
+
+def _ways(machine: Links) -> Iterator[HeldWay]:
+    """Yield mass matrices: how, each with its system."""
     absolute = absolute_angles(machine)
-    ways = (ABSOLUTE, absolute.system if absolute else None), (RELATIVE, recursion(machine))
-    for how, system in ways:
-        if system is not None:
-            yield from _solved(mechanism, machine, (how, system), rows, sought)
+    if absolute is not None:
+        yield ABSOLUTE, absolute.system, True
+    if absolute is None and all(link.about_axis for link in machine.links):
+        each = _each_by_its_own(machine)
+        absolute = absolute_angles(each)
+        if absolute is not None:
+            yield ABSOLUTE, _composed(machine, each, absolute.system), False
+    yield RELATIVE, recursion(machine), False
 
 
-def _all_turning(machine: Links) -> Links:
-    """Return the machine with an unknown of its own for each link that is known to turn."""
-    own = [Symbol(f"turning as known {n}", real=True) for n in range(len(machine.links))]
-    pairs = [(k, u) for k, u in zip(machine.links, own, strict=True) if k.unknown is None]
-    each = {u: (k.known, dict[Symbol, Expr]()) for k, u in pairs}
-    turning = tuple(replace(k, unknown=u, known=Integer(0)) if k.unknown is None else k
-                    for k, u in zip(machine.links, own, strict=True))  # fmt: skip
-    return replace(machine, links=turning, composed={**machine.composed, **each})
+def _each_by_its_own(machine: Links) -> Links:
+    """Return the machine with an unknown of its own for each link."""
+    own = (Drift(ZERO, {Symbol(f"turning {n}", real=True): unit_vector("xyz"[k.axis])})
+           for n, k in enumerate(machine.links))  # fmt: skip
+    turning = (replace(k, turning=drift) for k, drift in zip(machine.links, own, strict=True))
+    return replace(machine, links=tuple(turning))
 
 
 def _solved(
-    mechanism: Mechanism, machine: Links, way: tuple[str, MassMatrix],
+    mechanism: Mechanism, machine: Links, way: HeldWay,
     rows: Sequence[HeldCondition], sought: frozenset[Symbol],
 ) -> HeldWays:  # fmt: skip
-    how, system = way
-    in_angles = how == ABSOLUTE and not machine.composed
+    how, system, in_angles = way
     if in_angles:
         rows = [_absolute(machine, row) for row in rows]
-    if machine.composed:
-        system = _composed(machine, *way)
     order, forces = _leaves_first(machine), [r.force for r in rows if r.force in sought]
     before = mechanism.answers.frames.sheet.needed([e for r in rows for e in r.form.values()])
     ways = [("what follows put in", with_what_is_left(system, rows, order, pivots, forces))
@@ -92,22 +101,17 @@ def _absolute(machine: Links, row: HeldCondition) -> HeldCondition:
     return HeldCondition({u: x for u, x in form.items() if x != 0}, row.force)
 
 
-def _composed(machine: Links, how: str, system: MassMatrix) -> MassMatrix:
-    """Return a mass matrix in what links turn by, which may be several angles at once."""
-    own = {_unknown(k): Symbol(f"{_unknown(k)} itself", real=True) for k in machine.links}
+def _composed(machine: Links, each: Links, system: MassMatrix) -> MassMatrix:
+    """Return a mass matrix in absolute angles of links, by what turns each link in its parent."""
     forms: dict[Symbol, LinearSum] = {}
-    for link in machine.links:
-        plain = (Integer(0), {_unknown(link): Integer(1)})
-        rest, slopes = machine.composed.get(_unknown(link), plain)
-        form = {**slopes, ONE: rest}
-        if how == ABSOLUTE and link.parent != BASE:
-            for u, x in forms[own[_unknown(machine.links[link.parent])]].items():
+    for link, own in zip(machine.links, each.links, strict=True):
+        slopes = {u: d[link.axis] for u, d in link.turning.slopes.items()}
+        form = {**slopes, ONE: link.turning.rest[link.axis]}
+        if link.parent != BASE:
+            for u, x in forms[_unknown(each.links[link.parent])].items():
                 form[u] = form.get(u, Integer(0)) + x
-        forms[own[_unknown(link)]] = {u: x for u, x in form.items() if x != 0}
-    entries = {(own.get(a, a), own.get(b, b)): x for (a, b), x in system.entries.items()}
-    right = {own.get(u, u): x for u, x in system.right.items()}
-    in_links = MassMatrix(system.definitions, entries, right)
-    return put_into(in_links, forms, sorted(machine.motion, key=str))
+        forms[_unknown(own)] = {u: x for u, x in form.items() if x != 0}
+    return put_into(system, forms, sorted(machine.free, key=str))
 
 
 def _unknown(link: Link) -> Symbol:
@@ -116,8 +120,7 @@ def _unknown(link: Link) -> Symbol:
 
 
 def _leaves_first(machine: Links) -> list[Symbol]:
-    leaves = [u for u in map(_unknown, reversed(machine.links)) if u in machine.motion]
-    return [*leaves, *sorted(machine.motion - {*leaves}, key=str)]
+    return [*machine.turning, *sorted(machine.free - {*machine.turning}, key=str)]
 
 
 def _choices(

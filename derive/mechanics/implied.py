@@ -82,11 +82,12 @@ def _as_found(machine: Links, found: Mapping[Symbol, Expr]) -> Links:
         return replace(drift, rest=rest)
 
     each = tuple(
-        replace(k, known=found[k.unknown], drift=known(k.drift) if k.drift else None)
-        for k in machine.links if k.unknown is not None
-    )  # fmt: skip
+        replace(k, turning=known(k.turning), drift=known(k.drift) if k.drift else None)
+        for k in machine.links
+    )
     carried = tuple((m, known(drift)) for m, drift in machine.carried)
-    return replace(machine, links=each, carried=carried)
+    wheels = tuple(replace(w, spinning=known(w.spinning)) for w in machine.wheels)
+    return replace(machine, links=each, carried=carried, wheels=wheels)
 
 
 def by_rows(system: MassMatrix, own: MassMatrix, found: Mapping[Symbol, Expr]) -> Implied:

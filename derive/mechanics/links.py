@@ -1,4 +1,4 @@
-"""A machine whose links turn one in another about axes of theirs: what they are, and what acts.
+"""A machine of links that turn and slide one in another, of wheels on them, and what acts on them.
 
 All vectors are columns along the axes of a link, or of the base, which does not turn.
 """
@@ -6,15 +6,11 @@ All vectors are columns along the axes of a link, or of the base, which does not
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from sympy import Expr, Integer, Matrix, Rational, Symbol, eye
+from sympy import Expr, Matrix, Symbol
 
-from derive.lecture.turning import PLACE, unit_vector
-from derive.mechanics.bodies import centre, inertia_tensor, mass
+from derive.lecture.turning import unit_vector
 from derive.mechanics.bulk import NO_BULK, Bulk, at_point
-from derive.mechanics.frames import ZERO, Frames
-from derive.mechanics.loads import Wrench, wrenches
-from derive.scene.declaration import Turning
-from derive.scene.machine import INERTIAL, Force, Frame, Weight
+from derive.mechanics.frames import ZERO
 
 BASE = -1
 """The place of what does not turn, where a link would have its place."""
@@ -22,7 +18,7 @@ BASE = -1
 
 @dataclass(frozen=True)
 class Drift:
-    """The acceleration of a point that does not turn: known, and by each unknown."""
+    """An acceleration, of a point or in turning: known, and by each unknown."""
 
     rest: Matrix
     slopes: Mapping[Symbol, Matrix]
@@ -30,23 +26,65 @@ class Drift:
 
 @dataclass(frozen=True)
 class Link:
-    """What turns in its parent about an axis of both, through its hinge.
+    """What turns in its parent, mostly about an axis of both, through its hinge.
 
-    axis    : its place, 0 to 2         hinge : along the parent's axes
-    unknown : the second rate of its angle where it is free; else that is ``known``
-    drift   : how its hinge accelerates where its parent is the base
+    axis     : its place, 0 to 2        hinge : along the parent's axes
+    spin     : its angular velocity in its parent, along its axes, and ``turning`` how that changes
+    going    : how its hinge moves as seen from its parent, along the parent's axes
+    drift    : how its hinge accelerates as seen from there; None if it is fixed in its parent
+    attitude : what takes its components to its parent's where it does not turn about an axis
     """
 
     parent: int
     axis: int
-    unknown: Symbol | None
-    known: Expr
-    rate: Expr
+    spin: Matrix
+    turning: Drift
     cosine: Expr
     sine: Expr
     hinge: Matrix
     drift: Drift | None
+    going: Matrix
     bulk: Bulk = NO_BULK
+    attitude: Matrix | None = None
+
+    @property
+    def turns(self) -> bool:
+        """Tell whether it turns in its parent."""
+        return self.spin != ZERO or self.turning.rest != ZERO or (self.cosine, self.sine) != (1, 0)
+
+    @property
+    def about_axis(self) -> bool:
+        """Tell whether it turns about its axis alone."""
+        every = (self.spin, self.turning.rest, *self.turning.slopes.values())
+        others = [n for n in range(3) if n != self.axis]
+        return self.attitude is None and all(v[n] == 0 for v in every for n in others)
+
+    @property
+    def rate(self) -> Expr:
+        """Return how fast it turns about its axis."""
+        return self.spin[self.axis]
+
+    @property
+    def unknown(self) -> Symbol | None:
+        """Return the second rate of its angle if that alone is unknown."""
+        if [*self.turning.slopes.values()] == [unit_vector("xyz"[self.axis])] and self.about_axis:
+            return next(iter(self.turning.slopes))
+        return None
+
+
+@dataclass(frozen=True)
+class Wheel:
+    """What spins on a link about an axis through its mass centre, or any if it is a ball.
+
+    Its mass and all its inertia is the link's; this is what it spins by, along the link's axes.
+
+    inertia : its moment of inertia about the axis
+    """
+
+    link: int
+    inertia: Expr
+    spin: Matrix
+    spinning: Drift
 
 
 @dataclass(frozen=True)
@@ -65,9 +103,10 @@ class Push:
 class Links:
     """Links, parents first, the masses that do not turn, gravity, and all else that acts.
 
+    level  : the link whose axes gravity is along, or the base
     motors : the known moment about the axis of a link that its parent takes on
     drives : the same where it is sought, with its sign
-    composed : what turns by several angles at once: what its unknown is made of
+    acting : what acts on an unknown beside, as on wheels
     """
 
     links: tuple[Link, ...]
@@ -76,20 +115,35 @@ class Links:
     pushes: tuple[Push, ...]
     motors: Mapping[int, Expr] = field(default_factory=dict)
     drives: Mapping[int, tuple[Symbol, Expr]] = field(default_factory=dict)
-    composed: Mapping[Symbol, tuple[Expr, Mapping[Symbol, Expr]]] = field(default_factory=dict)
+    wheels: tuple[Wheel, ...] = ()
+    acting: Mapping[Symbol, Expr] = field(default_factory=dict)
+    level: int = BASE
+
+    @property
+    def turning(self) -> tuple[Symbol, ...]:
+        """Return the unknowns that turn links, those of wheels on them first, from the leaves."""
+        wheels = (w.spinning for w in self.wheels if w.link != BASE)
+        turns = (*wheels, *(k.turning for k in reversed(self.links)))
+        return tuple(dict.fromkeys(u for d in turns for u in d.slopes))
 
     @property
     def free(self) -> frozenset[Symbol]:
         """Return the accelerations that a motion of the machine is made of."""
-        drifts = (*(d for _, d in self.carried), *(k.drift for k in self.links if k.drift))
-        angles = (k.unknown for k in self.links if k.unknown is not None)
-        return frozenset((*angles, *(u for d in drifts for u in d.slopes)))
+        drifts = (*(d for _, d in self.carried), *(w.spinning for w in self.wheels),
+                  *(k.drift for k in self.links if k.drift))  # fmt: skip
+        return frozenset((*self.turning, *(u for d in drifts for u in d.slopes)))
 
     @property
-    def motion(self) -> frozenset[Symbol]:
-        """Return the accelerations that it is made of in the end, however links turn by them."""
-        of = (u for _, slopes in self.composed.values() for u in slopes)
-        return self.free - self.composed.keys() | frozenset(of)
+    def plain(self) -> bool:
+        """Tell whether each link turns freely about an axis, at a place of what carries it."""
+        fixed = all((k.parent == BASE) == (k.drift is not None) for k in self.links)
+        freely = all(k.unknown is not None for k in self.links)
+        angles = {k.unknown for k in self.links}
+        apart = len(angles) == len(self.links) and not angles & {
+            u for k in self.links if k.drift for u in k.drift.slopes
+        }
+        still = all(w.link == BASE for w in self.wheels) and self.level == BASE
+        return fixed and freely and apart and still and not self.drives
 
     @property
     def driving(self) -> frozenset[Symbol]:
@@ -124,165 +178,10 @@ def near_hinges(machine: Links) -> Links:
         hinge, along = link.hinge, ZERO
         if link.parent != BASE:
             hinge = (hinge + moved[link.parent]).applyfunc(lambda e: e.expand())
-            along = hinge[link.axis] * unit_vector("xyz"[link.axis])
+            if link.drift is None and link.about_axis:
+                along = hinge[link.axis] * unit_vector("xyz"[link.axis])
         moved.append(along)
         found.append(replace(link, hinge=hinge - along, bulk=link.bulk.moved(along)))
     pushes = (p if p.link == BASE else replace(p, arm=p.arm + moved[p.link])
               for p in machine.pushes)  # fmt: skip
     return replace(machine, links=tuple(found), pushes=tuple(pushes))
-
-
-class OtherMachineError(Exception):
-    """A machine that has more than links which turn freely."""
-
-
-def links(frames: Frames, sought: frozenset[Symbol]) -> Links | None:
-    """Return the links of a machine, None if it has more than links which turn freely.
-
-    sought : the unknowns of the motion; all others do no work, which who uses this has to prove
-    """
-    try:
-        return near_hinges(_Survey(frames, sought).read())
-    except OtherMachineError:
-        return None
-
-
-class _Survey:
-    """Reads frames, bodies and loads, and gives up at what is no link."""
-
-    def __init__(self, frames: Frames, sought: frozenset[Symbol]) -> None:
-        self.frames, self.sought = frames, sought
-        words = frames.words
-        self.fixed = words.vocabulary.fixed() | words.hidden.keys()
-        self.reactions = dict.fromkeys(frames.sheet.unknowns - sought, Integer(0))
-        self.links: list[Link] = []
-        self.motors: dict[int, Expr] = {}
-        self.drives: dict[int, tuple[Symbol, Expr]] = {}
-        self.composed: dict[Symbol, tuple[Expr, Mapping[Symbol, Expr]]] = {}
-        self.of: dict[str, int] = {INERTIAL: BASE}
-        self.at: dict[str, Matrix] = {INERTIAL: ZERO}  # the origin of a frame, in its link's axes
-
-    def read(self) -> Links:
-        machine = self.frames.machine
-        for name, frame in self.frames.each.items():
-            if name != INERTIAL:
-                self._frame(frame)
-        carried = [own for b in machine.bodies for own in self._body(b.name)]
-        gravity, weights = self._gravity()
-        joints = [load for load in machine.loads if isinstance(load, Force)]
-        driven = [load for load in joints if self._motor(load)]
-        other = weights | {load.name for load in driven}
-        acting = [w for w in wrenches(self.frames) if w.load not in other]
-        pushes = tuple(p for w in acting for p in self._push(w))
-        return Links(tuple(self.links), tuple(carried), gravity, pushes, self.motors, self.drives,
-                     self.composed)  # fmt: skip
-
-    def _frame(self, frame: Frame) -> None:
-        moves = (frame.angular_velocity, frame.velocity, frame.acceleration, frame.rolls)
-        if frame.attitude or any(m is not None for m in moves):
-            raise OtherMachineError
-        link, origin = self.of[frame.parent], self.frames.words.column(frame.origin)
-        place = self.at[frame.parent] + origin
-        if link != BASE and not self._constant(place):
-            raise OtherMachineError
-        for turn in frame.turned:
-            self._turned(turn, link, place)
-            link, place = len(self.links) - 1, ZERO
-        self.of[frame.name], self.at[frame.name] = link, place
-
-    def _turned(self, turn: Turning, parent: int, place: Matrix) -> None:
-        sheet, (R, rate) = self.frames.sheet, self.frames.one_turn(turn)
-        rest, slopes = sheet.split(sheet.rate(rate))
-        axis, unknown = PLACE[turn.axis], next(iter(slopes), None)
-        if slopes and (rest != 0 or list(slopes.values()) != [1]):
-            unknown = Symbol(f"turning {len(self.links)}", real=True)
-            self.composed[unknown] = (rest, slopes)
-            if not self._constant(Matrix([*slopes.values()])):
-                raise OtherMachineError
-            rest = Integer(0)
-        i, j = (axis + 1) % 3, (axis + 2) % 3
-        drift = self._drift(place) if parent == BASE else None
-        self.links.append(Link(parent, axis, unknown, rest, rate, R[i, i], R[j, i], place, drift))
-
-    def _body(self, body: str) -> list[tuple[Expr, Drift]]:
-        """Add a body to its link, or return it if it does not turn."""
-        member = self.frames.machine.body(body)
-        spins = (member.spin, member.axial_speed, member.angular_velocity)
-        if member.turned or any(s is not None for s in spins):
-            raise OtherMachineError
-        m, I = mass(self.frames, body), inertia_tensor(self.frames, body)  # noqa: E741
-        frame, at = centre(self.frames, body)
-        link, place = self.of[frame], self.at[frame] + at
-        if link == BASE:
-            return [(m, self._drift(place))]
-        if not self._constant(place):
-            raise OtherMachineError
-        spread = (I.trace() * Rational(1, 2) * eye(3) - I).applyfunc(lambda e: e.expand())
-        own, at_place = self.links[link], at_point(m, place)
-        bulk = own.bulk + at_place + Bulk(Integer(0), ZERO, spread)
-        self.links[link] = replace(own, bulk=bulk)
-        return []
-
-    def _gravity(self) -> tuple[Matrix, frozenset[str]]:
-        """Return the gravity that acts on all bodies, and the loads that it is."""
-        machine = self.frames.machine
-        loads = [load for load in machine.loads if isinstance(load, Weight)]
-        if len(loads) != 1 or {*loads[0].on} != {b.name for b in machine.bodies}:
-            return ZERO, frozenset()
-        (load,) = loads
-        g = self.frames.words.column(load.gravity)
-        if self.of[load.along] != BASE or not self._constant(g):
-            return ZERO, frozenset()
-        return g, frozenset({load.name})
-
-    def _known(self, vector: Matrix) -> Matrix:
-        """Return what of a load is known."""
-        found = vector.xreplace(self.reactions)
-        if found.free_symbols & self.sought:
-            raise OtherMachineError
-        return found
-
-    def _motor(self, load: Force) -> bool:
-        """Note a couple between a link and its parent, and tell whether a load is that alone."""
-        column = self.frames.words.column
-        force, couple = (column(v).xreplace(self.reactions) for v in (load.force, load.couple))
-        ends = [self.of[self.frames.own(load.on)]]
-        ends += [self.of[self.frames.own(load.against)]] if load.against else [BASE]
-        if force != ZERO or self.of[load.along] not in ends:
-            return False
-        for (link, other), sign in ((ends, 1), (ends[::-1], -1)):
-            if link != BASE and self.links[link].parent == other:
-                rest, slopes = self.frames.sheet.split(sign * couple[self.links[link].axis])
-                self.motors[link] = self.motors.get(link, Integer(0)) + rest
-                for u, slope in slopes.items():
-                    if slope not in (1, -1) or link in self.drives:
-                        raise OtherMachineError
-                    self.drives[link] = u, slope
-                return True
-        return False
-
-    def _push(self, w: Wrench) -> list[Push]:
-        """Return what of a load is known, in nothing if it is only what holds a joint."""
-        force, couple = self._known(w.force), self._known(w.couple)
-        link, along = self.of[self.frames.own(w.body)], self.of[w.along]
-        if force == ZERO:
-            still = couple == ZERO or link == BASE
-            return [] if still else [Push(link, ZERO, None, along, force, couple)]
-        if self.of[w.point[0]] != link:
-            raise OtherMachineError
-        place = self.at[w.point[0]] + w.point[1]
-        drift = self._drift(place) if link == BASE else None
-        return [Push(link, ZERO if drift else place, drift, along, force, couple)]
-
-    def _drift(self, place: Matrix) -> Drift:
-        sheet = self.frames.sheet
-        second = sheet.rate_of_column(sheet.rate_of_column(place))
-        each = [sheet.split(e) for e in second]
-        found = {u for _, slopes in each for u in slopes}
-        by = {u: Matrix([s.get(u, Integer(0)) for _, s in each]) for u in sorted(found, key=str)}
-        if not found <= self.sought or not all(self._constant(d) for d in by.values()):
-            raise OtherMachineError
-        return Drift(Matrix([rest for rest, _ in each]), by)
-
-    def _constant(self, values: Matrix) -> bool:
-        return bool(values.free_symbols <= self.fixed)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 from sympy import Expr, Integer, Matrix, Symbol
 
-from derive.mechanics.links import Drift
+from derive.mechanics.links import BASE, Drift, Links
 
 
 @dataclass(frozen=True)
@@ -31,15 +31,19 @@ class MassMatrix:
     entries: dict[tuple[Symbol, Symbol], Expr] = field(default_factory=dict)
     right: dict[Symbol, Expr] = field(default_factory=dict)
     factors: Factors | None = None
+    named: dict[Expr, Expr] = field(default_factory=dict)
 
     def cut(self, name: str, value: Expr) -> Expr:
-        """Return a symbol for a value, unless it is plain."""
-        if value.is_Symbol or value.is_Number or (-value).is_Symbol:
+        """Return a symbol for a value, unless it is plain; equal ones have one, but for signs."""
+        if value.is_Number or value.as_coeff_Mul()[1].is_Symbol:
             return value
+        if value in self.named:
+            return self.named[value]
         symbol = Symbol(name, real=True)
         if symbol in self.definitions:
             symbol = Symbol(f"{name}'{len(self.definitions)}", real=True)
         self.definitions[symbol] = value
+        self.named |= {value: symbol, -value: -symbol}
         return symbol
 
     def column(self, name: str, values: Matrix) -> Matrix:
@@ -61,16 +65,38 @@ class MassMatrix:
             self.act(unknown, -m * d.dot(drift.rest - gravity))
         self.carry(m, drift)
 
+    def still(self, machine: Links) -> None:
+        """Add all that does not turn: masses and wheels that the base carries, and what acts."""
+        for m, drift in machine.carried:
+            self.translate(m, drift, machine.gravity)
+        for wheel in machine.wheels:
+            if wheel.link == BASE:
+                each = list(wheel.spinning.slopes.items())
+                for u, d in each:
+                    self.act(u, -wheel.inertia * d.dot(wheel.spinning.rest))
+                self.alike(each, [wheel.inertia * d for _, d in each])
+        for unknown, value in machine.acting.items():
+            self.act(unknown, value)
+
+    def alike(self, each: Sequence[tuple[Symbol, Matrix]], taken: Sequence[Matrix]) -> None:
+        """Add what unknowns take that move one thing, each by how all others move it."""
+        for n, (unknown, _) in enumerate(each):
+            for other, d in each[n:]:
+                self.add(unknown, other, d.dot(taken[n]))
+
     def carry(self, m: Expr, drift: Drift) -> None:
         """Add such a mass to the matrix alone."""
         each = list(drift.slopes.items())
-        for n, (unknown, d) in enumerate(each):
-            for other, d_other in each[n:]:
-                self.add(unknown, other, m * d.dot(d_other))
+        self.alike(each, [m * d for _, d in each])
+
+    def copied(self) -> "MassMatrix":
+        """Return one that is free to be added to."""
+        each = (dict(self.definitions), dict(self.entries), dict(self.right))
+        return MassMatrix(*each, named=dict(self.named))
 
     def solved(self, order: Sequence[Symbol]) -> tuple["MassMatrix", dict[Symbol, Expr]]:
         """Return the unknowns, and what is computed on the way to them in an order."""
-        own = MassMatrix(dict(self.definitions))
+        own = MassMatrix(dict(self.definitions), named=dict(self.named))
         A, left = dict(self.entries), list(order)
         b = {u: own.cut("b", self.right.get(u, Integer(0))) for u in order}
         factors, inverses = dict[tuple[Symbol, Symbol], Expr](), dict[Symbol, Expr]()
@@ -86,7 +112,7 @@ class MassMatrix:
                     less = A.get((n, m), Integer(0)) - factors[n, u] * A[m, u]
                     A[n, m] = A[m, n] = own.cut("a", less)
         own.factors = Factors(tuple(order), factors, inverses)
-        found: dict[Symbol, Expr] = {}
+        own.named, found = {}, dict[Symbol, Expr]()  # what is found stands by itself
         for u, inverse in reversed(inverses.items()):
             rest = sum((e * found[n] for (n, k), e in factors.items() if k == u), Integer(0))
             found[u] = own.cut("x", b[u] * inverse - rest)

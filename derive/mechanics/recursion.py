@@ -6,14 +6,14 @@ a link is a mass at its hinge, and mass on the axis of a hinge is the parent's, 
 A body turning needs K r of each of its particles, K = alpha x + omega x omega x.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
-from sympy import Expr, Integer, Matrix, Symbol, zeros
+from sympy import Expr, Integer, Matrix, Symbol, eye, zeros
 
 from derive.lecture.turning import unit_vector
-from derive.mechanics.bulk import Bulk
+from derive.mechanics.bulk import Bulk, at_point
 from derive.mechanics.frames import ZERO
-from derive.mechanics.links import BASE, Link, Links
+from derive.mechanics.links import BASE, Link, Links, Wheel
 from derive.mechanics.mass_matrix import MassMatrix
 
 
@@ -28,7 +28,7 @@ def driven(machine: Links) -> dict[Symbol, Expr]:
     own.follow()
     moments = own.moments()
     found = {
-        u: sign * (moments[k] - machine.motors.get(k, Integer(0)))
+        u: sign * (moments[k][machine.links[k].axis] - machine.motors.get(k, Integer(0)))
         for k, (u, sign) in machine.drives.items()
     }
     return {**own.system.definitions, **found}
@@ -36,12 +36,18 @@ def driven(machine: Links) -> dict[Symbol, Expr]:
 
 @dataclass
 class Recursion:
-    """The passes of a machine, outward and inward."""
+    """The passes of a machine, outward and inward.
+
+    above : how hinges accelerate while nothing unknown does, gravity taken off, along the axes of
+            the parent; ``a`` the same along the link's
+    """
 
     machine: Links
     system: MassMatrix
     omega: list[Matrix] = field(default_factory=list)
+    alpha: list[Matrix] = field(default_factory=list)
     K: list[Matrix] = field(default_factory=list)
+    above: list[Matrix] = field(default_factory=list)
     a: list[Matrix] = field(default_factory=list)
 
     def acted(self) -> MassMatrix:
@@ -49,16 +55,19 @@ class Recursion:
         machine, system = self.machine, self.system
         self.follow()
         for link, moment in zip(machine.links, self.moments(), strict=True):
-            system.act(link.unknown, -moment)
+            for u, e in link.turning.slopes.items():
+                system.act(u, -e.dot(moment))
         for k, link in enumerate(machine.links):
             if link.drift is not None:
-                rest = self.bodies[k].mass * (link.drift.rest - machine.gravity)
+                rest = self.bodies[k].mass * self.above[k]
                 for u, d in link.drift.slopes.items():
                     system.act(u, -d.dot(rest))
-        for m, drift in machine.carried:
-            system.translate(m, drift, machine.gravity)
         for k, moment in machine.motors.items():
-            system.act(machine.links[k].unknown, moment)
+            for u, e in machine.links[k].turning.slopes.items():
+                system.act(u, e[machine.links[k].axis] * moment)
+        for wheel in (w for w in machine.wheels if w.link != BASE):
+            self._spun(wheel)
+        system.still(machine)
         return system
 
     def assembled(self) -> MassMatrix:
@@ -70,24 +79,41 @@ class Recursion:
     def follow(self) -> None:
         """Follow the links outward."""
         self.bodies = _without_mass_on_axes(self.machine)
-        alphas: list[Matrix] = []
-        for link in self.machine.links:
-            self._moves(link, alphas)
+        parts = [p for b in self.bodies for p in (b.mass, *b.first, *b.second)]
+        self.data = frozenset(s for p in parts for s in p.free_symbols)
+        for k in range(len(self.machine.links)):
+            self._moves(k)
 
-    def _moves(self, link: Link, alphas: list[Matrix]) -> None:
+    def _moves(self, k: int) -> None:
         """Add how a link moves while nothing unknown accelerates, gravity taken off."""
-        system, e = self.system, unit_vector("xyz"[link.axis])
-        if link.drift is not None:
-            above, omega, alpha = link.drift.rest - self.machine.gravity, ZERO, ZERO
-        else:
-            p = link.parent
-            above = self.a[p] + self.K[p] * link.hinge
-            omega, alpha = self._in(link, self.omega[p]), self._in(link, alphas[p])
-        self.a.append(self._in(link, above))
-        turning = omega.cross(e) * link.rate + e * link.known
-        alphas.append(system.column("alpha", alpha + turning))
-        self.omega.append(system.column("turning", omega + e * link.rate))
-        self.K.append(self._turning(self.omega[-1], alphas[-1]))
+        system, link, p = self.system, self.machine.links[k], self.machine.links[k].parent
+        omega, alpha = ZERO, ZERO
+        if p != BASE:
+            omega, alpha = self._in(link, self.omega[p]), self._in(link, self.alpha[p])
+        self.above.append(self._hinge(k))
+        self.a.append(self._in(link, self.above[k]))
+        turning = omega.cross(link.spin) + link.turning.rest
+        self.alpha.append(system.column("alpha", alpha + turning))
+        self.omega.append(system.column("turning", omega + link.spin))
+        self.K.append(self._turning(self.omega[-1], self.alpha[-1]))
+
+    def _hinge(self, k: int) -> Matrix:
+        """Return how a hinge moves while nothing unknown accelerates, gravity taken off."""
+        link, p = self.machine.links[k], self.machine.links[k].parent
+        if link.drift is None:
+            return self.a[p] + self.K[p] * link.hinge
+        if p == BASE:
+            return link.drift.rest - self._gravity(k)
+        seen = link.drift.rest + 2 * self.omega[p].cross(link.going)
+        hinge = self.system.column("hinge", link.hinge)
+        return self.system.column("above", self.a[p] + self.K[p] * hinge + seen)
+
+    def _gravity(self, k: int) -> Matrix:
+        """Return gravity along the axes of the base, which a link turns in that it hangs on."""
+        level, gravity = self.machine.level, self.machine.gravity
+        if level == k:
+            return self._out(self.machine.links[k], gravity)
+        return gravity if level == BASE else ZERO
 
     def _turning(self, omega: Matrix, alpha: Matrix) -> Matrix:
         """Return K, of which each entry takes an operation once its products are there."""
@@ -99,11 +125,11 @@ class Recursion:
                     [xz - b, yz + a, -xx - yy]])  # fmt: skip
         return K.applyfunc(lambda entry: cut("K", entry))
 
-    def moments(self) -> list[Expr]:
-        """Return the moment about each axis of all outboard, without what unknowns need."""
+    def moments(self) -> list[Matrix]:
+        """Return the moments at each hinge of all outboard, without what unknowns need."""
         links, system = self.machine.links, self.system
         forces, moments = [[ZERO] * len(links) for _ in range(2)]
-        about = [Integer(0)] * len(links)
+        about = [ZERO] * len(links)
         for push in self.machine.pushes:
             if push.link == BASE:
                 force = self._carried(push.force, push.along, BASE)
@@ -114,63 +140,114 @@ class Recursion:
             forces[push.link] -= force
             moments[push.link] -= push.arm.cross(force)
             moments[push.link] -= self._carried(push.couple, push.along, push.link)
+        for wheel in (w for w in self.machine.wheels if w.link != BASE):
+            moments[wheel.link] += self._whirled(wheel)
         for k, link in reversed(list(enumerate(links))):
             bulk, K = self.bodies[k], self.K[k]
             own = _crossed(bulk.second, K) + bulk.first.cross(self.a[k])
-            moment = system.column("effort", own + moments[k])
-            about[k] = moment[link.axis]
+            about[k] = system.column("effort", own + moments[k])
             force = self._out(link, system.column("pull", K * bulk.first + forces[k]))
-            if link.drift is not None:
-                for u, d in link.drift.slopes.items():
-                    system.act(u, -d.dot(force))
+            for u, d in link.drift.slopes.items() if link.drift else ():
+                system.act(u, -d.dot(force))
+            if link.parent == BASE:
                 continue
+            force += ZERO if link.drift is None else bulk.mass * self.above[k]
             forces[link.parent] += force
-            moments[link.parent] += self._out(link, moment) + link.hinge.cross(force)
+            moments[link.parent] += self._out(link, about[k]) + link.hinge.cross(force)
         return about
+
+    def _whirled(self, wheel: Wheel) -> Matrix:
+        """Return the moment that the spin of a wheel takes, without what unknowns need."""
+        whirl = self.system.column("whirl", wheel.inertia * wheel.spin)
+        return wheel.inertia * wheel.spinning.rest + self.omega[wheel.link].cross(whirl)
+
+    def _spun(self, wheel: Wheel) -> None:
+        """Add what a wheel takes by its spin."""
+        turned = self.alpha[wheel.link] + self.omega[wheel.link].cross(wheel.spin)
+        for u, d in wheel.spinning.slopes.items():
+            self.system.act(u, -wheel.inertia * d.dot(turned + wheel.spinning.rest))
 
     def _masses(self) -> None:
         """Add what the acceleration of each joint alone takes at it and at all inboard."""
         links, system = self.machine.links, self.system
         whole = list(self.bodies)
+        for wheel in (w for w in self.machine.wheels if w.link != BASE):
+            each = [*wheel.spinning.slopes.items()]
+            system.alike(each, [wheel.inertia * d for _, d in each])
+            for u, d in each:
+                self._at(wheel.link, u, ZERO, wheel.inertia * d)
         for k, link in reversed(list(enumerate(links))):
             first = system.column("first", whole[k].first)
             second = self._symmetric(whole[k].second)
-            e = unit_vector("xyz"[link.axis])
-            moment = (second.trace() * e - second * e).applyfunc(lambda x: x.expand())
-            system.add(link.unknown, link.unknown, moment[link.axis])
-            force = e.cross(first)
-            self._inboard(k, force, moment)
+            turns = [*link.turning.slopes.items()]
+            inertia = second.trace() * eye(3) - second
+            moments = [(inertia * w).applyfunc(lambda x: x.expand()) for _, w in turns]
+            system.alike(turns, moments)
+            for (u, w), moment in zip(turns, moments, strict=True):
+                self._inboard(k, u, w.cross(first), moment)
             if link.drift is not None:
-                system.carry(whole[k].mass, link.drift)
-                continue
-            arm = self._out(link, first)
-            spread = self._turned(link, second)
-            offset = link.hinge * arm.T
-            more = Bulk(Integer(0), arm, spread + offset + offset.T)
-            whole[link.parent] = whole[link.parent] + more
+                slides, m = [*link.drift.slopes.items()], whole[k].mass
+                system.alike(slides, [m * d for _, d in slides])
+                arm = self._out(link, first)
+                for u, d in slides:
+                    self._beyond(k, u, m * d, arm.cross(d))
+            if link.parent != BASE:
+                augmented = self.bodies[k].mass if link.drift is None else Integer(0)
+                m = whole[k].mass - augmented
+                whole[link.parent] += self._hung(link, m, first, second)
 
-    def _inboard(self, k: int, force: Matrix, moment: Matrix) -> None:
-        links, system = self.machine.links, self.system
-        for n in self.machine.path(k):
-            link = links[n]
-            if n != k:
-                system.add(links[n].unknown, links[k].unknown, moment[link.axis])
-            force = self._out(link, force)
-            if link.drift is not None:
-                for u, d in link.drift.slopes.items():
-                    system.add(u, links[k].unknown, system.cut("along", d.dot(force)))
-                return
-            moment = system.column("effort", self._out(link, moment) + link.hinge.cross(force))
+    def _hung(self, link: Link, m: Expr, first: Matrix, second: Matrix) -> Bulk:
+        """Return what a link adds to its parent, which has all mass at fixed hinges but ``m``."""
+        spread = self._turned(link, second)
+        arm = self._out(link, first)
+        offset = link.hinge * arm.T
+        return Bulk(Integer(0), arm, spread + offset + offset.T) + at_point(m, link.hinge)
+
+    def _both(self, u: Symbol, v: Symbol, value: Expr) -> None:
+        """Add what two motions of different places take, which may be by one unknown."""
+        self.system.add(u, v, 2 * value if u == v else value)
+
+    def _at(self, k: int, u: Symbol, force: Matrix, moment: Matrix) -> None:
+        """Add what an unknown takes beyond a link, at it and at all inboard, along its axes."""
+        for v, w in self.machine.links[k].turning.slopes.items():
+            self._both(u, v, w.dot(moment))
+        self._inboard(k, u, force, moment)
+
+    def _inboard(self, k: int, u: Symbol, force: Matrix, moment: Matrix) -> None:
+        """Add what an unknown takes at the hinge of a link, and at all inboard."""
+        link = self.machine.links[k]
+        force = self._out(link, force)
+        for v, d in link.drift.slopes.items() if link.drift else ():
+            self._both(u, v, self.system.cut("along", d.dot(force)))
+        if link.parent != BASE:
+            self._beyond(k, u, force, self._out(link, moment))
+
+    def _beyond(self, k: int, u: Symbol, force: Matrix, moment: Matrix) -> None:
+        """Add what an unknown takes inboard of a hinge, along the axes of its parent."""
+        link = self.machine.links[k]
+        if link.parent == BASE:
+            return
+        moment = self.system.column("effort", moment + link.hinge.cross(force))
+        self._at(link.parent, u, force, moment)
 
     def _symmetric(self, values: Matrix) -> Matrix:
         found = zeros(3, 3)
         for i in range(3):
             for j in range(i, 3):
-                found[i, j] = found[j, i] = self.system.cut("second", values[i, j])
+                constant, varying = values[i, j].as_independent(
+                    *self._varying(values[i, j]), as_Add=True
+                )
+                found[i, j] = found[j, i] = constant + self.system.cut("second", varying)
         return found
+
+    def _varying(self, value: Expr) -> list[Symbol]:
+        """Return what in a value is no datum of a link."""
+        return sorted(value.free_symbols - self.data, key=str)
 
     def _turned(self, link: Link, P: Matrix) -> Matrix:
         """Return second moments along the parent's axes, by two products of sine and cosine."""
+        if link.sine == 0:
+            return P
         cut, c, s, e = self.system.cut, link.cosine, link.sine, link.axis
         i, j = (e + 1) % 3, (e + 2) % 3
         u = cut("spread", s * (P[j, j] - P[i, i]) - 2 * c * P[i, j])
@@ -194,13 +271,19 @@ class Recursion:
 
     def _in(self, link: Link, vector: Matrix) -> Matrix:
         """Return a vector along a link's axes by that along its parent's."""
+        if link.attitude is not None:
+            return link.attitude.T * self.system.column("part", vector)
         return self._rotated(link, vector, -link.sine)
 
     def _out(self, link: Link, vector: Matrix) -> Matrix:
         """Return a vector along the axes of a link's parent."""
+        if link.attitude is not None:
+            return link.attitude * self.system.column("part", vector)
         return self._rotated(link, vector, link.sine)
 
     def _rotated(self, link: Link, vector: Matrix, s: Expr) -> Matrix:
+        if s == 0:
+            return vector
         c, e = link.cosine, link.axis
         i, j = (e + 1) % 3, (e + 2) % 3
         vector = self.system.column("part", vector)
@@ -209,17 +292,26 @@ class Recursion:
 
 
 def _crossed(P: Matrix, K: Matrix) -> Matrix:
-    """Return the sum of m r x (K r)."""
+    """Return the sum of m r x (K r), each entry of K once."""
     M = P * K.T
-    return Matrix([M[1, 2] - M[2, 1], M[2, 0] - M[0, 2], M[0, 1] - M[1, 0]])
+    crossed = Matrix([M[1, 2] - M[2, 1], M[2, 0] - M[0, 2], M[0, 1] - M[1, 0]])
+    every = sorted({s for entry in K for s in entry.free_symbols}, key=str)
+    return crossed.applyfunc(lambda e: sum((e.expand().coeff(k) * k for k in every), Integer(0)))
 
 
 def _without_mass_on_axes(machine: Links) -> list[Bulk]:
     """Return augmented links, mass along the axis of each hinge added to the parent instead."""
     found = [k.bulk for k in machine.links]
     for n, link in reversed(list(enumerate(machine.links))):
-        e = unit_vector("xyz"[link.axis])
-        own = found[n]
+        own, e = found[n], unit_vector("xyz"[link.axis])
+        if link.parent != BASE and not link.turns:
+            found[link.parent] += Bulk(Integer(0), ZERO, own.second)
+            found[n] = replace(own, second=zeros(3, 3))
+            continue
+        if not link.about_axis or (link.parent != BASE and link.drift is not None):
+            if link.drift is None:
+                found[link.parent] += at_point(own.mass, link.hinge)
+            continue
         along, spread = own.first[link.axis], own.second[link.axis, link.axis]
         line = Bulk(own.mass, along * e, spread * e * e.T)
         found[n] = Bulk(own.mass, own.first - line.first, own.second - line.second)

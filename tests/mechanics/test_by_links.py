@@ -12,8 +12,9 @@ from derive.library.library import library
 from derive.mechanics import balances
 from derive.mechanics import by_links as ways
 from derive.mechanics.by_links import by_links
-from derive.mechanics.links import BASE, Link, Links, links
+from derive.mechanics.links import BASE, Link, Links
 from derive.mechanics.mechanism import Mechanism, mechanism
+from derive.mechanics.survey import links
 from derive.scene import parse_scene
 from derive.verify.prove import prove
 from tests.mechanics.chains import ON_A_CART, PUSHED, driven
