@@ -13,7 +13,7 @@ from time import process_time
 from typing import Any
 
 from bench.chains import chain
-from bench.links import MOST_OF_SYMPY, ChainOfRods, by_kane
+from bench.links import MOST_OF_SYMPY, by_kane
 from bench.report.plots import STYLE
 from derive.command.terminal import console
 from derive.emit.files import write
@@ -51,7 +51,7 @@ def grown(axes: str) -> Grown:
     error = max(m.worst for m in figures(made, FEW))
     seconds = process_time() - start
     rods = len(axes)
-    theirs = by_kane(ChainOfRods("", axes))[0] if rods <= MOST_OF_SYMPY else None
+    theirs = by_kane(made.scene).flops if rods <= MOST_OF_SYMPY else None
     return Grown(rods, made["accelerations"].flops(), theirs, error, seconds)
 
 

@@ -1,31 +1,31 @@
-"""Chains of rods beside SymPy: operations of their accelerations, and CPU seconds to derive them.
+"""Machines beside SymPy: operations of their accelerations, and CPU seconds to derive them.
 
-``python -m bench.links`` prints the table of ``docs/links.md``. SymPy's KanesMethod gives the mass
+``python -m bench.links`` prints the tables of ``docs/links.md``. SymPy's KanesMethod gives the mass
 matrix and the right side; ``cse`` shares what their entries have in common, and then what L D L^T
-on entries that are symbols has. The least known is by hand: see ``docs/links.md``.
+on entries that are symbols has. The least known of chains is by hand: see ``docs/links.md``.
 """
 
 import argparse
+import re
 import sys
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from time import process_time
 
+from mpmath import mp
 from rich.table import Table
-from sympy import Expr, Matrix, Symbol, cse, preorder_traversal, symbols
-from sympy.physics.mechanics import (
-    KanesMethod,
-    Point,
-    ReferenceFrame,
-    RigidBody,
-    dynamicsymbols,
-    inertia,
-)
+from sympy import Expr, Matrix, Pow, Symbol, cse, preorder_traversal
 
 from bench.chains import chain
+from bench.kane import KaneEquations, NoPeerError, equations
 from derive.command.terminal import console
 from derive.library.library import library
-from derive.scene import parse_scene
+from derive.mechanics.mechanism import Mechanism, mechanism
+from derive.mechanics.probe import DIGITS, NOTHING, random_probe, solved
+from derive.mechanics.problem import answered
+from derive.scene import Scene, SceneError, parse_scene
+from derive.scene.machine import SOUGHT
 from derive.verify.prove import prove
 
 PLANAR, IN_TURN = "planar chain of {} rods", "axes in turn, {} rods"
@@ -51,57 +51,90 @@ CHAINS = (
 )
 
 
-def ours(own: ChainOfRods) -> tuple[int, int, float]:
-    """Return operations, divisions among them, and seconds to derive and prove a chain."""
+FOLDERS = ("derive/scene/catalogue", "tests/mechanics/scenes", "bench/machines")
+WANTED = re.compile(r"^wanted\s*=\s*\[.*?\]", re.MULTILINE | re.DOTALL)
+ACCELERATIONS = SOUGHT[:2]
+
+
+@dataclass(frozen=True)
+class Cost:
+    """Operations, divisions among them, and CPU seconds to derive them."""
+
+    flops: int
+    divisions: int
+    seconds: float
+
+    def __str__(self) -> str:
+        """Return divisions apart."""
+        return f"{self.flops - self.divisions} + {self.divisions}"
+
+
+def machines(folders: Iterable[str] = FOLDERS) -> dict[str, Scene]:
+    """Return the scenes of folders that can be asked for accelerations, asked for these alone."""
+    found = {}
+    for path in (p for folder in folders for p in sorted(Path(folder).glob("*.toml"))):
+        asked = asking(path.read_text(encoding="utf-8"), path.stem)
+        if asked is not None:
+            found[path.stem] = asked
+    return found
+
+
+def asking(text: str, name: str) -> Scene | None:
+    """Return a scene asked for its accelerations alone, None if it has none."""
+    for function in ACCELERATIONS:
+        try:
+            scene = parse_scene(WANTED.sub(f'wanted = ["{function}"]', text), name)
+            mechanism(scene).problem(function)
+        except SceneError:
+            continue
+        return scene
+    return None
+
+
+def ours(scene: Scene) -> Cost:
+    """Return what the accelerations of a scene take, and seconds to derive and prove them."""
     start = process_time()
-    made = library(parse_scene(chain(own.axes, on_a_cart=own.on_a_cart), "chain"))
+    made = library(scene)
     prove(made)
-    program = made["accelerations"]
-    return program.flops(), program.count.get("div", 0), process_time() - start
+    program = made[next(name for name in ACCELERATIONS if name in scene.wanted)]
+    return Cost(program.flops(), program.count.get("div", 0), process_time() - start)
 
 
-def by_kane(own: ChainOfRods) -> tuple[int, float]:
-    """Return operations by KanesMethod and cse, and seconds."""
+def by_kane(scene: Scene) -> Cost:
+    """Return what KanesMethod, cse and L D L^T take.
+
+    Raises NoPeerError where the scene cannot be told to KanesMethod.
+    """
     start = process_time()
-    mass, right = equations(own)
-    n = mass.rows
+    found = equations(mechanism(scene))
+    mass, n = found.mass, found.mass.rows
     entries = [mass[i, j] for i in range(n) for j in range(i, n)]
-    A = Matrix(n, n, lambda i, j: Symbol(f"a_{min(i, j)}_{max(i, j)}"))
+    A = Matrix(n, n, lambda i, j: _entry(mass, min(i, j), max(i, j)))
     solution = A.LDLsolve(Matrix([Symbol(f"b_{i}") for i in range(n)]))
-    total = counted(*cse([*entries, *right])) + counted(*cse([*solution]))
-    return total, process_time() - start
+    stages = cse([*entries, *found.right]), cse([*solution])
+    divisions = sum(_divides(e) for shared, left in stages for e in (*dict(shared).values(), *left))
+    return Cost(sum(counted(*stage) for stage in stages), divisions, process_time() - start)
 
 
-def equations(own: ChainOfRods) -> tuple[Matrix, Matrix]:
-    """Return the mass matrix and the right side by Kane's method."""
-    m, length, g = symbols("m l g")
-    n = len(own.axes)
-    q, u = dynamicsymbols(f"q:{n}"), dynamicsymbols(f"u:{n}")
-    N, hinge = ReferenceFrame("N"), Point("O")
-    hinge.set_vel(N, 0)
-    frame, bodies, loads = N, [], []
-    if own.on_a_cart:
-        x, v = dynamicsymbols("x v")
-        hinge.set_vel(N, v * N.x)
-        bodies.append(RigidBody("cart", hinge, N, 3 * m, (inertia(N, 0, 0, 0), hinge)))
-        q, u = [*q, x], [*u, v]
-    for k, axis in enumerate(own.axes):
-        e = getattr(frame, axis)
-        link = frame.orientnew(f"B{k}", "Axis", (q[k], e))
-        link.set_ang_vel(frame, u[k] * e)
-        centre, end = (
-            hinge.locatenew(f"{s}{k}", -r * link.z) for s, r in (("G", length / 2), ("P", length))
-        )
-        for point in (centre, end):
-            point.v2pt_theory(hinge, N, link)
-        about = inertia(link, m * length**2 / 12, m * length**2 / 12, 0)
-        bodies.append(RigidBody(f"rod{k}", centre, link, m, (about, centre)))
-        loads.append((centre, -m * g * N.z))
-        frame, hinge = link, end
-    rates = [a.diff() - b for a, b in zip(q, u, strict=True)]
-    kane = KanesMethod(N, list(q), list(u), kd_eqs=rates)
-    kane.kanes_equations(bodies, loads)
-    return kane.mass_matrix, kane.forcing
+def _entry(mass: Matrix, i: int, j: int) -> Expr:
+    return mass[i, j] if mass[i, j] == 0 else Symbol(f"a_{i}_{j}")
+
+
+def _divides(e: Expr) -> int:
+    return sum(1 for p in preorder_traversal(e) if isinstance(p, Pow) and p.exp.is_negative)
+
+
+def same(own: Mechanism, found: KaneEquations) -> bool:
+    """Tell whether equations yield at a trial point the accelerations that balances do."""
+    problem, probe = own.whole(own.scene.wanted[0]), random_probe(own.words, 0)
+    probe.define(problem.definitions)
+    true, probe = answered(problem, probe), random_probe(own.words, 0)
+    with mp.workdps(DIGITS):
+        matrix = [[probe.value(e) for e in found.mass.row(k)] for k in range(found.mass.rows)]
+        values = solved(matrix, [probe.value(e) for e in found.right])
+    by = dict(zip(found.unknowns, values, strict=True))
+    each = zip((by[s] for s in problem.answers), true, strict=True)
+    return all(abs(x - y) <= NOTHING * max(1, abs(x)) for x, y in each)
 
 
 def counted(shared: Iterable[tuple[Symbol, Expr]], left: Iterable[Expr]) -> int:
@@ -130,24 +163,49 @@ def _operations(e: Expr) -> int:
     return 0
 
 
-def table(chains: Iterable[ChainOfRods]) -> Table:
+def chains_beside(chains: Iterable[ChainOfRods]) -> Table:
     """Return what chains take, ours beside others."""
     found = Table("machine", "ours", "of these /", "seconds", "SymPy", "seconds", "known")
     for own in chains:
-        flops, divisions, seconds = ours(own)
-        theirs = by_kane(own) if len(own.axes) <= MOST_OF_SYMPY else None
-        beside = (str(theirs[0]), f"{theirs[1]:.1f}") if theirs else ("", "")
-        known = str(own.known or "")
-        found.add_row(own.name, str(flops), str(divisions), f"{seconds:.1f}", *beside, known)
+        scene = parse_scene(chain(own.axes, on_a_cart=own.on_a_cart), "chain")
+        cost = ours(scene)
+        theirs = by_kane(scene) if len(own.axes) <= MOST_OF_SYMPY else None
+        beside = (str(theirs.flops), f"{theirs.seconds:.1f}") if theirs else ("", "")
+        figures = str(cost.flops), str(cost.divisions), f"{cost.seconds:.1f}"
+        found.add_row(own.name, *figures, *beside, str(own.known or ""))
+    return found
+
+
+def machines_beside(scenes: dict[str, Scene]) -> Table:
+    """Return what the accelerations of scenes take, ours beside SymPy's, and where ours are dearer.
+
+    A scene in which a load does work that Kane's method leaves out is marked: its equations differ.
+    """
+    found = Table("machine", "unknowns", "ours", "seconds", "SymPy", "seconds", "")
+    for name, scene in scenes.items():
+        cost = ours(scene)
+        own = mechanism(scene)
+        try:
+            theirs, other = by_kane(scene), not same(own, equations(own))
+        except NoPeerError as reason:
+            found.add_row(name, "", str(cost), f"{cost.seconds:.1f}", str(reason), "", "")
+            continue
+        says = ["other equations"] * other + ["dearer"] * (cost.flops > theirs.flops)
+        unknowns = str(sum(len(q.components) for q in own.whole(scene.wanted[0]).outputs))
+        each = str(cost), f"{cost.seconds:.1f}", str(theirs), f"{theirs.seconds:.1f}"
+        found.add_row(name, unknowns, *each, ", ".join(says))
     return found
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Print the table; return the exit code."""
+    """Print the tables; return the exit code."""
     parser = argparse.ArgumentParser(prog="python -m bench.links", description=__doc__)
     parser.add_argument("--most", type=int, default=6, metavar="RODS", help="rods of a chain")
-    most = parser.parse_args(arguments).most
-    console.print(table(own for own in CHAINS if len(own.axes) <= most))
+    parser.add_argument("--only", nargs="*", metavar="FOLDER", help="machines of these alone")
+    given = parser.parse_args(arguments)
+    if given.only is None:
+        console.print(chains_beside(own for own in CHAINS if len(own.axes) <= given.most))
+    console.print(machines_beside(machines(given.only or FOLDERS)))
     return 0
 
 

@@ -10,7 +10,7 @@ from sympy import Symbol
 from derive.lecture.chapters import LECTURE
 from derive.lower.apart import apart
 from derive.lower.arrange import plan
-from derive.lower.arrange.arrangement import Arrangement
+from derive.lower.arrange.arrangement import PLAIN, Arrangement
 from derive.lower.expand import families
 from derive.lower.forms import (
     Dependents,
@@ -111,11 +111,14 @@ def arranged(terms: Graphed, base: str) -> Arranged:
     if len(found) == 1:
         return replace(found[0], ways={ways[0].by: 0})
     costs = [cost(terms.graph, _best(terms, one)) for one in found]
-    order = sorted(range(len(found)), key=costs.__getitem__)
-    each = {ways[n].by: costs[n][0] for n in reversed(order)}
-    implied = {ways[n].by: ways[n] for n in reversed(order) if ways[n].implied}
-    taken = dict(reversed(each.items()))
-    return replace(found[order[0]], ways=taken, implied=tuple(implied.values()))
+    order = sorted(range(len(found)), key=lambda n: (costs[n][0], ways[n].by != PLAIN, costs[n][1]))
+    each: dict[str, int] = {}
+    implied: dict[str, Arrangement] = {}
+    for n in order:
+        each.setdefault(ways[n].by, costs[n][0])
+        if ways[n].implied:
+            implied.setdefault(ways[n].by, ways[n])
+    return replace(found[order[0]], ways=each, implied=tuple(implied.values()))
 
 
 def function(terms: Graphed, wanted: Arranged, name: str) -> Program:

@@ -6,7 +6,7 @@ All vectors are columns along the axes of a link, or of the base, which does not
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from sympy import Expr, Matrix, Symbol
+from sympy import Expr, Integer, Matrix, Symbol, zeros
 
 from derive.lecture.turning import unit_vector
 from derive.mechanics.bulk import NO_BULK, Bulk, at_point
@@ -73,7 +73,7 @@ class Link:
 
 
 @dataclass(frozen=True)
-class Wheel:
+class Rotor:
     """What spins on a link about an axis through its mass centre, or any if it is a ball.
 
     Its mass and all its inertia is the link's; this is what it spins by, along the link's axes.
@@ -115,7 +115,7 @@ class Links:
     pushes: tuple[Push, ...]
     motors: Mapping[int, Expr] = field(default_factory=dict)
     drives: Mapping[int, tuple[Symbol, Expr]] = field(default_factory=dict)
-    wheels: tuple[Wheel, ...] = ()
+    wheels: tuple[Rotor, ...] = ()
     acting: Mapping[Symbol, Expr] = field(default_factory=dict)
     level: int = BASE
 
@@ -185,3 +185,27 @@ def near_hinges(machine: Links) -> Links:
     pushes = (p if p.link == BASE else replace(p, arm=p.arm + moved[p.link])
               for p in machine.pushes)  # fmt: skip
     return replace(machine, links=tuple(found), pushes=tuple(pushes))
+
+
+def without_mass_on_axes(machine: Links) -> list[Bulk]:
+    """Return augmented links, mass along the axis of each hinge added to the parent instead."""
+    found = [k.bulk for k in machine.links]
+    for n, link in reversed(list(enumerate(machine.links))):
+        own, e = found[n], unit_vector("xyz"[link.axis])
+        if link.parent != BASE and not link.turns:
+            found[link.parent] += Bulk(Integer(0), ZERO, own.second)
+            found[n] = replace(own, second=zeros(3, 3))
+            continue
+        if not link.about_axis or (link.parent != BASE and link.drift is not None):
+            if link.drift is None:
+                found[link.parent] += at_point(own.mass, link.hinge)
+            continue
+        along, spread = own.first[link.axis], own.second[link.axis, link.axis]
+        line = Bulk(own.mass, along * e, spread * e * e.T)
+        found[n] = Bulk(own.mass, own.first - line.first, own.second - line.second)
+        if link.parent != BASE:
+            h = link.hinge
+            offset = along * h * e.T
+            moved = line.mass * h * h.T + offset + offset.T + line.second
+            found[link.parent] += Bulk(line.mass, line.mass * h + line.first, moved)
+    return found

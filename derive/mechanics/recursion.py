@@ -6,14 +6,13 @@ a link is a mass at its hinge, and mass on the axis of a hinge is the parent's, 
 A body turning needs K r of each of its particles, K = alpha x + omega x omega x.
 """
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 from sympy import Expr, Integer, Matrix, Symbol, eye, zeros
 
-from derive.lecture.turning import unit_vector
 from derive.mechanics.bulk import Bulk, at_point
 from derive.mechanics.frames import ZERO
-from derive.mechanics.links import BASE, Link, Links, Wheel
+from derive.mechanics.links import BASE, Link, Links, Rotor, without_mass_on_axes
 from derive.mechanics.mass_matrix import MassMatrix
 
 
@@ -78,7 +77,7 @@ class Recursion:
 
     def follow(self) -> None:
         """Follow the links outward."""
-        self.bodies = _without_mass_on_axes(self.machine)
+        self.bodies = without_mass_on_axes(self.machine)
         parts = [p for b in self.bodies for p in (b.mass, *b.first, *b.second)]
         self.data = frozenset(s for p in parts for s in p.free_symbols)
         for k in range(len(self.machine.links)):
@@ -156,12 +155,12 @@ class Recursion:
             moments[link.parent] += self._out(link, about[k]) + link.hinge.cross(force)
         return about
 
-    def _whirled(self, wheel: Wheel) -> Matrix:
+    def _whirled(self, wheel: Rotor) -> Matrix:
         """Return the moment that the spin of a wheel takes, without what unknowns need."""
         whirl = self.system.column("whirl", wheel.inertia * wheel.spin)
         return wheel.inertia * wheel.spinning.rest + self.omega[wheel.link].cross(whirl)
 
-    def _spun(self, wheel: Wheel) -> None:
+    def _spun(self, wheel: Rotor) -> None:
         """Add what a wheel takes by its spin."""
         turned = self.alpha[wheel.link] + self.omega[wheel.link].cross(wheel.spin)
         for u, d in wheel.spinning.slopes.items():
@@ -297,27 +296,3 @@ def _crossed(P: Matrix, K: Matrix) -> Matrix:
     crossed = Matrix([M[1, 2] - M[2, 1], M[2, 0] - M[0, 2], M[0, 1] - M[1, 0]])
     every = sorted({s for entry in K for s in entry.free_symbols}, key=str)
     return crossed.applyfunc(lambda e: sum((e.expand().coeff(k) * k for k in every), Integer(0)))
-
-
-def _without_mass_on_axes(machine: Links) -> list[Bulk]:
-    """Return augmented links, mass along the axis of each hinge added to the parent instead."""
-    found = [k.bulk for k in machine.links]
-    for n, link in reversed(list(enumerate(machine.links))):
-        own, e = found[n], unit_vector("xyz"[link.axis])
-        if link.parent != BASE and not link.turns:
-            found[link.parent] += Bulk(Integer(0), ZERO, own.second)
-            found[n] = replace(own, second=zeros(3, 3))
-            continue
-        if not link.about_axis or (link.parent != BASE and link.drift is not None):
-            if link.drift is None:
-                found[link.parent] += at_point(own.mass, link.hinge)
-            continue
-        along, spread = own.first[link.axis], own.second[link.axis, link.axis]
-        line = Bulk(own.mass, along * e, spread * e * e.T)
-        found[n] = Bulk(own.mass, own.first - line.first, own.second - line.second)
-        if link.parent != BASE:
-            h = link.hinge
-            offset = along * h * e.T
-            moved = line.mass * h * h.T + offset + offset.T + line.second
-            found[link.parent] += Bulk(line.mass, line.mass * h + line.first, moved)
-    return found

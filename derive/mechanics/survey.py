@@ -8,15 +8,7 @@ from derive.lecture.turning import PLACE, unit_vector
 from derive.mechanics.bodies import centre, inertia_tensor, mass
 from derive.mechanics.bulk import Bulk, at_point
 from derive.mechanics.frames import ZERO, Frames, Located
-from derive.mechanics.links import (
-    BASE,
-    Drift,
-    Link,
-    Links,
-    Push,
-    Wheel,
-    near_hinges,
-)
+from derive.mechanics.links import BASE, Drift, Link, Links, Push, Rotor, near_hinges
 from derive.mechanics.loads import Wrench, wrenches
 from derive.scene.declaration import Turning
 from derive.scene.machine import INERTIAL, Force, Frame, Weight
@@ -46,7 +38,7 @@ class _Survey:
         self.fixed = words.vocabulary.fixed() | words.hidden.keys()
         self.reactions = dict.fromkeys(frames.sheet.unknowns - sought, Integer(0))
         self.links: list[Link] = []
-        self.wheels: dict[str, Wheel] = {}
+        self.wheels: dict[str, Rotor] = {}
         self.motors: dict[int, Expr] = {}
         self.drives: dict[int, tuple[Symbol, Expr]] = {}
         self.acting: dict[Symbol, Expr] = {}
@@ -157,7 +149,7 @@ class _Survey:
         if not tensor.is_diagonal() or len({tensor[n, n] for n in others}) > 1:
             raise OtherMachineError
         spinning = self._split(self._rates(spin))
-        self.wheels[body] = Wheel(link, tensor[about[0], about[0]], spin, spinning)
+        self.wheels[body] = Rotor(link, tensor[about[0], about[0]], spin, spinning)
 
     def _gravity(self) -> tuple[Matrix, int, frozenset[str]]:
         """Return the gravity that acts on all bodies, along what, and the loads that it is."""
