@@ -18,7 +18,7 @@ from rich.table import Table
 from sympy import Expr, Matrix, Pow, Symbol, cse, preorder_traversal
 
 from bench.chains import chain
-from bench.kane import KaneEquations, NoPeerError, equations
+from bench.kane import KaneEquations, equations
 from derive.command.terminal import console
 from derive.library.library import library
 from derive.mechanics.mechanism import Mechanism, mechanism
@@ -70,11 +70,14 @@ class Cost:
 
 
 def machines(folders: Iterable[str] = FOLDERS) -> dict[str, Scene]:
-    """Return the scenes of folders that can be asked for accelerations, asked for these alone."""
+    """Return the scenes of folders that can be asked for accelerations, asked for these alone.
+
+    Those with constraints are left out: they are not told to KanesMethod.
+    """
     found = {}
     for path in (p for folder in folders for p in sorted(Path(folder).glob("*.toml"))):
         asked = asking(path.read_text(encoding="utf-8"), path.stem)
-        if asked is not None:
+        if asked is not None and not asked.constraints:
             found[path.stem] = asked
     return found
 
@@ -185,11 +188,7 @@ def machines_beside(scenes: dict[str, Scene]) -> Table:
     for name, scene in scenes.items():
         cost = ours(scene)
         own = mechanism(scene)
-        try:
-            theirs, other = by_kane(scene), not same(own, equations(own))
-        except NoPeerError as reason:
-            found.add_row(name, "", str(cost), f"{cost.seconds:.1f}", str(reason), "", "")
-            continue
+        theirs, other = by_kane(scene), not same(own, equations(own))
         says = ["other equations"] * other + ["dearer"] * (cost.flops > theirs.flops)
         unknowns = str(sum(len(q.components) for q in own.whole(scene.wanted[0]).outputs))
         each = str(cost), f"{cost.seconds:.1f}", str(theirs), f"{theirs.seconds:.1f}"
