@@ -10,7 +10,7 @@ from sympy import Symbol
 from derive.lecture.chapters import LECTURE
 from derive.lower.apart import apart
 from derive.lower.arrange import plan
-from derive.lower.arrange.arrangement import PLAIN, Arrangement
+from derive.lower.arrange.arrangement import BY_BALANCES, Arrangement
 from derive.lower.expand import families
 from derive.lower.forms import (
     Dependents,
@@ -111,7 +111,9 @@ def arranged(terms: Graphed, base: str) -> Arranged:
     if len(found) == 1:
         return replace(found[0], ways={ways[0].by: 0})
     costs = [cost(terms.graph, _best(terms, one)) for one in found]
-    order = sorted(range(len(found)), key=lambda n: (costs[n][0], ways[n].by != PLAIN, costs[n][1]))
+    order = sorted(
+        range(len(found)), key=lambda n: (costs[n][0], ways[n].by != BY_BALANCES, costs[n][1])
+    )
     each: dict[str, int] = {}
     implied: dict[str, Arrangement] = {}
     for n in order:

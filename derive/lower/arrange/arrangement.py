@@ -6,7 +6,7 @@ from sympy import Expr, Symbol
 
 from derive.mechanics.implied import Implied as Implied
 
-PLAIN = "balances"
+BY_BALANCES = "balances"
 """The way that stays where no other takes fewer operations."""
 
 
@@ -34,5 +34,5 @@ class Arrangement:
 
     definitions: tuple[Definition, ...]
     outputs: tuple[Expr, ...]
-    by: str = PLAIN
+    by: str = BY_BALANCES
     implied: Implied | None = field(default=None, compare=False)
