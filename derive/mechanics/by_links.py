@@ -32,7 +32,8 @@ def by_links(
 ) -> Iterator[tuple[str, OnTheWay, Implied | None]]:  # fmt: skip
     """Yield ways to the unknowns of a function: how, values in order, what they stand on before.
 
-    Beside these stands what slopes of the unknowns follow from, where a mass matrix was solved.
+    Beside these stands what slopes of the unknowns follow from, where a mass matrix of links that
+    turn freely was solved: of others it may divide by nothing where a body is a rod.
     """
     found, sheet = mechanism.lean(base), mechanism.answers.frames.sheet
     problem = found.problem
@@ -75,10 +76,11 @@ def _solved(
     for order in _orders(machine, unknowns):
         if absolute is not None:
             own, found = absolute.system.solved(order)
-            implied = absolute.told(by_rows(absolute.system, own, found))
-            yield "absolute angles", {**own.definitions, **relative(machine, found)}, implied
+            told = absolute.told(by_rows(absolute.system, own, found)) if machine.plain else None
+            yield "absolute angles", {**own.definitions, **relative(machine, found)}, told
         own, found = system.solved(order)
-        yield "recursion", {**own.definitions, **found}, by_passes(machine, own, found)
+        told = by_passes(machine, own, found) if machine.plain else None
+        yield "recursion", {**own.definitions, **found}, told
 
 
 def _pairs(machine: Links) -> int:

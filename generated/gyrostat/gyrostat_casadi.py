@@ -12,7 +12,7 @@ where it cannot and a derivative exists, it gives NaN or an infinity.
 import casadi as ca
 
 PARAMETERS = ['I_xx', 'I_yy', 'I_zz', 'I_xy', 'I_xz', 'I_yz', 'C_1', 'C_2', 'C_3']
-CONSTANTS = ['I_xz', 'I_yz', 'I_yy_minus_I_zz', 'C_3', 'I_xy', 'C_2', 'J_xx', 'I_xx_minus_I_yy', 'C_1', 'J_xy', 'J_xz', 'J_yy', 'J_yz', 'J_zz', 'one_over_C_1', 'one_over_C_2', 'one_over_C_3', 'C_1_J_xy', 'C_1_J_xz', 'C_1_J_yy', 'C_1_J_yz', 'C_1_J_zz', 'C_2_J_xx', 'C_2_J_xz', 'C_2_J_xy', 'C_2_J_yz', 'C_2_J_zz', 'C_3_J_xx', 'C_3_J_xy', 'C_3_J_yy', 'C_3_J_xz', 'C_3_J_yz', 'minus_J_xx', 'minus_J_xy', 'minus_J_xz', 'minus_J_yy', 'minus_J_yz', 'minus_J_zz', 'k1', 'k2', 'k3', 'half_C_1', 'half_I_xx_minus_C_1', 'half_C_2', 'half_C_3', 'half_I_yy', 'half_I_zz', 'I_xx', 'I_yy', 'I_zz']
+CONSTANTS = ['I_xz', 'I_yz', 'I_yy_minus_I_zz', 'C_3', 'I_xy', 'C_2', 'J_xx', 'I_xx_minus_I_yy', 'C_1', 'J_xy', 'J_xz', 'J_yy', 'J_yz', 'J_zz', 'one_over_C_1', 'one_over_C_2', 'one_over_C_3', 'C_1_J_xy', 'C_1_J_xz', 'C_1_J_yy', 'C_1_J_yz', 'C_1_J_zz', 'C_2_J_xx', 'C_2_J_xz', 'C_2_J_xy', 'C_2_J_yz', 'C_2_J_zz', 'C_3_J_xx', 'C_3_J_xy', 'C_3_J_yy', 'C_3_J_xz', 'C_3_J_yz', 'minus_J_xx', 'minus_J_xy', 'minus_J_xz', 'minus_J_yy', 'minus_J_yz', 'minus_J_zz', 'k1', 'k2', 'k3', 'half_I_zz_minus_C_3', 'half_C_1', 'half_C_2', 'half_C_3', 'half_I_xx_minus_C_1', 'half_I_yy_minus_C_2', 'I_xx', 'I_yy', 'I_zz']
 SETUP_STATUS = {0: 'all is right', 1: 'a parameter is not finite', 4: 'an inertia is none that a body can have', 5: 'a constant is not finite'}
 
 
@@ -266,12 +266,12 @@ def _tried():
     s70 = _add(s46, s30)
     s71 = _add(s47, s37)
     s72 = _add(s48, s45)
-    s73 = _mul((parameters[6], 0.0), (0.5, 0.0))
-    s74 = _mul(s3, (0.5, 0.0))
+    s73 = _mul(s1, (0.5, 0.0))
+    s74 = _mul((parameters[6], 0.0), (0.5, 0.0))
     s75 = _mul((parameters[7], 0.0), (0.5, 0.0))
     s76 = _mul((parameters[8], 0.0), (0.5, 0.0))
-    s77 = _mul((parameters[1], 0.0), (0.5, 0.0))
-    s78 = _mul((parameters[2], 0.0), (0.5, 0.0))
+    s77 = _mul(s3, (0.5, 0.0))
+    s78 = _mul(s0, (0.5, 0.0))
     r0 = _neg((parameters[3], 0.0))
     r1 = _neg((parameters[4], 0.0))
     r2 = _neg((parameters[5], 0.0))
@@ -664,39 +664,37 @@ def _kinetic_energy():
     constants = ca.SX.sym("constants", 50)
     omega = ca.SX.sym("omega", 3)
     wheel_speeds = ca.SX.sym("wheel_speeds", 3)
-    t0 = omega[0] + wheel_speeds[0]
-    t1 = t0 * t0
-    t2 = t1 * constants[41]
-    t3 = omega[0] * omega[0]
+    t0 = omega[2] * omega[2]
+    t1 = t0 * constants[41]
+    t2 = omega[0] + wheel_speeds[0]
+    t3 = t2 * t2
     t4 = t3 * constants[42]
-    t5 = t2 + t4
-    t6 = wheel_speeds[1] * wheel_speeds[1]
-    t7 = t6 * constants[43]
-    t8 = t5 + t7
-    t9 = wheel_speeds[2] * wheel_speeds[2]
-    t10 = t9 * constants[44]
-    t11 = t8 + t10
-    t12 = omega[0] * constants[4]
-    t13 = omega[2] * constants[1]
-    t14 = t12 + t13
-    t15 = wheel_speeds[1] * constants[5]
+    t5 = t1 + t4
+    t6 = omega[1] + wheel_speeds[1]
+    t7 = t6 * t6
+    t8 = t7 * constants[43]
+    t9 = t5 + t8
+    t10 = omega[2] + wheel_speeds[2]
+    t11 = t10 * t10
+    t12 = t11 * constants[44]
+    t13 = t9 + t12
+    t14 = omega[0] * constants[45]
+    t15 = omega[1] * constants[4]
     t16 = t14 - t15
-    t17 = omega[1] * constants[45]
+    t17 = omega[2] * constants[0]
     t18 = t16 - t17
-    t19 = omega[1] * t18
-    t20 = t11 - t19
-    t21 = omega[0] * constants[0]
-    t22 = wheel_speeds[2] * constants[3]
+    t19 = omega[0] * t18
+    t20 = t13 + t19
+    t21 = omega[1] * constants[46]
+    t22 = omega[2] * constants[1]
     t23 = t21 - t22
-    t24 = omega[2] * constants[46]
-    t25 = t23 - t24
-    t26 = omega[2] * t25
-    t27 = t20 - t26
+    t24 = omega[1] * t23
+    t25 = t20 + t24
     return ca.Function(
         "gyrostat_kinetic_energy_hot",
         [constants, omega, wheel_speeds],
         [
-            ca.vertcat(t27),
+            ca.vertcat(t25),
         ],
         ['constants', 'omega', 'wheel_speeds'],
         ['kinetic_energy'],
