@@ -16,7 +16,7 @@ from derive.scene.machine import Result
 from derive.scene.results import MATRICES, written_out
 from derive.scene.steady import steady_parts
 from derive.verify.cloud import CloudAnswers, answers
-from derive.verify.cloud.held import fulfilled
+from derive.verify.cloud.fulfilled import fulfilled
 from derive.verify.cloud.series import DIGITS, ball_of
 from derive.verify.cloud.small import is_at_rest, slopes_about_rest
 from derive.verify.convergence import unit_attitude

@@ -5,8 +5,6 @@ from fractions import Fraction
 from typing import Any, Protocol
 
 from derive.library.setting import Setting
-from derive.mechanics.constraints import Partials, Tie
-from derive.mechanics.frames import Frames
 from derive.motion.constrained import PASSES, Homing, held_step
 from derive.program.program import Program
 from derive.scene import Input, Scene, SceneError
@@ -67,15 +65,6 @@ def homing_of(of: OfMachine, distances: Program) -> Homing:
               isinstance(c.rate, Formula) and speeds & {*symbols(c.rate)})]  # fmt: skip
     driving = [c.rate.name for c in scene.coordinates if c.free and isinstance(c.rate, Input)]
     driving += [s.name for s in scene.speeds if s.free]
-    frames = of.mechanism.answers.frames
-    again = any(_curved(frames, tie) for tie in found.kept if tie.place is None)
     return Homing(distances, tuple(places), tuple(rates),
-                weights(moving), weights(driving), PASSES if again else 1,
+                weights(moving), weights(driving), PASSES if found.curved else 1,
                 tuple(q.components for q in states if q.is_quaternion))  # fmt: skip
-
-
-def _curved(frames: Frames, tie: Tie) -> bool:
-    """Tell whether a condition is no line in the rates that it is of."""
-    by = Partials(frames)
-    slopes = [by.by(tie.first, rate) for rate in by.rates.values()]
-    return any(by.by(slope, rate) != 0 for slope in slopes for rate in by.rates.values())

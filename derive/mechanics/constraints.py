@@ -149,3 +149,10 @@ def symbols_held(held: Sequence[Tie]) -> frozenset[Symbol]:
     """Return all that the second rates of conditions hold, and what enforces them."""
     found = {s for c in held for s in c.second.free_symbols}
     return frozenset(found | {c.factor for c in held if c.factor is not None})
+
+
+def curved(frames: Frames, value: Expr) -> bool:
+    """Tell whether a value is no line in the rates that it is of."""
+    by = Partials(frames)
+    slopes = [by.by(value, rate) for rate in by.rates.values()]
+    return any(by.by(slope, rate) != 0 for slope in slopes for rate in by.rates.values())

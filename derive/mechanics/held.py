@@ -6,13 +6,14 @@ nothing could tell how it shares its part, is taken as zero. What cannot be fulf
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from random import Random
 
 import numpy as np
 from sympy import Symbol
 
 from derive.mechanics.box import Box, ranges
-from derive.mechanics.constraints import Tie, ties
+from derive.mechanics.constraints import Tie, curved, ties
 from derive.mechanics.frames import Frames
 from derive.mechanics.onto import TELLING, Onto, onto
 from derive.scene import SceneError
@@ -35,6 +36,12 @@ class Bindings:
     onto: Onto | None = None
     told: Mapping[Symbol, str] = field(default_factory=dict)
     every: tuple[Tie, ...] = ()
+
+    @cached_property
+    def curved(self) -> bool:
+        """Tell whether a condition of rates is no line in them: one correction does not do then."""
+        kept = [c.first for c in self.kept if c.place is None]
+        return self.onto is not None and any(curved(self.onto.frames, first) for first in kept)
 
     @property
     def doubts(self) -> tuple[str, ...]:

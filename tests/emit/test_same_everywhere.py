@@ -65,6 +65,8 @@ WHOLE = {
     "check/target/build.py: _taken": "bytes",
     "check/target/harness.py: count_of": "values counted",
     "bench/nmpc.py: flown": "seconds of this run",
+    "bench/links.py: by_kane": "operations counted",
+    "bench/links.py: machines_beside": "components counted",
     "emit/package/tested.py: _function": "values counted",
     "command/lecture.py: _verified": "seconds of this run",
     "lower/expand.py: degree": "powers",

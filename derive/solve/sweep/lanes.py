@@ -246,7 +246,8 @@ def lanes_begun(
     held = _held(library, plan.functions)
     state = {q.name: rows(q) for q in library.vocabulary.states}
     for name in plan.turned:
-        state[name] /= np.sqrt(sum(x * x for x in state[name]))
+        w, x, y, z = state[name]
+        state[name] /= np.sqrt(w * w + x * x + y * y + z * z)
     other = {name: np.zeros_like(x) for name, x in state.items()}
     lanes = Lanes(by, library, plan, ids, constants, own, {q.name: rows(q) for q in held},
                   (state, other))  # fmt: skip

@@ -6,7 +6,7 @@ from typing import Any
 from mpmath import matrix, mp, mpf
 
 from derive.scene import Input, Scene
-from derive.verify.cloud.held import fulfilled
+from derive.verify.cloud.fulfilled import fulfilled
 from derive.verify.cloud.series import DIGITS
 from derive.verify.cloud.solution import CloudAnswers, answers
 
