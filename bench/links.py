@@ -143,6 +143,7 @@ def same(own: Mechanism, found: KaneEquations) -> bool:
 def counted(shared: Iterable[tuple[Symbol, Expr]], left: Iterable[Expr]) -> int:
     """Return the number of ``+ - * /`` in formulas; signs are free.
 
+    >>> from sympy import symbols
     >>> x, y = symbols("x y")
     >>> counted([], [-x * y + 1 / x, x**2])
     4
