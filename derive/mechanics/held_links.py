@@ -116,7 +116,7 @@ def _solved(
     """Return what follows by sums that are zero, each as a sum of what does not."""
     left, found = dict(enumerate(zeros)), dict[Symbol, LinearSum]()
     for pivot in pivots:
-        solved = _block(own, [left.pop(n) for n in pivot.rows], pivot.unknowns)
+        solved = _pivot_solved(own, [left.pop(n) for n in pivot.rows], pivot.unknowns)
         left = {n: _put(own, form, solved) for n, form in left.items()}
         found |= solved
     for u in reversed(found):
@@ -124,7 +124,7 @@ def _solved(
     return found
 
 
-def _block(
+def _pivot_solved(
     own: MassMatrix, rows: Sequence[LinearSum], unknowns: Sequence[Symbol]
 ) -> dict[Symbol, LinearSum]:
     """Return one or two unknowns by as many sums that are zero, by Cramer's rule."""
@@ -204,8 +204,8 @@ def _eliminated(
 ) -> Doubles:
     """Return slopes without what pivots take out of other rows."""
     found = np.array(left)
-    block = left[:, pivots][:, :, columns]
-    found[:, rows] -= left[:, rows][:, :, columns] @ np.linalg.pinv(block) @ left[:, pivots]
+    square = left[:, pivots][:, :, columns]
+    found[:, rows] -= left[:, rows][:, :, columns] @ np.linalg.pinv(square) @ left[:, pivots]
     return found
 
 

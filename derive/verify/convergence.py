@@ -72,7 +72,7 @@ class Order:
         """Tell whether the order is what is claimed, or a closed form is the motion."""
         if self.closed:
             return largest(self.errors) < ROUNDED
-        if largest(self.errors) < NOTHING:
+        if 0 < largest(self.errors) < NOTHING:
             return True
         return self.claimed - BELOW <= self.measured <= self.claimed + ABOVE
 

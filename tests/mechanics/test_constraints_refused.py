@@ -34,6 +34,7 @@ force = "?p"
 couple = ["?p_a", "?p_b", "0"]
 """
 
+LOADED = SLEIGH.replace('"blade", ', "")
 ROWS = (
     (FOUR, 'axes = ["x", "z"]', 'axes = ["x", "x"]', "must be a list of different ones of x, y"),
     (FOUR, 'axes = ["x", "z"]', 'axes = [["x"]]', "must be a list of different ones of x, y"),
@@ -53,7 +54,7 @@ ROWS = (
     (SLEIGH, ZERO, 'zero = "x^2 + y^2"', "constraint 'blade' changes with nothing where it is 0"),
     (SLEIGH, ZERO, 'zero = "x_dot^2 + y_dot^2"', "constraint 'blade' changes with nothing where"),
     (CRANK, GUIDED, GUIDED.replace("l*sin", "tau*sin"), "zero uses 'tau', an input, whose rate"),
-    (SLEIGH, ZERO, f'{ZERO}\nload = "pin"\n{ARM}', "load 'pin' cannot enforce constraint 'blade'"),
+    (LOADED, ZERO, f'{ZERO}\nload = "pin"\n{ARM}', "load 'pin' cannot enforce constraint 'blade'"),
     (CRANK, 'load = "guide"', 'load = "gide"', "constraint 'guided'.load must be one of main, pin"),
 )  # fmt: skip
 

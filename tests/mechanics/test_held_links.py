@@ -34,7 +34,7 @@ def test_machines_with_constraints_cost_less_than_by_kane_and_cse(name: str) -> 
     assert own["accelerations"].flops() < BY_SYMPY[name]
 
 
-@pytest.mark.parametrize("wrong", ["_put", "_block"])
+@pytest.mark.parametrize("wrong", ["_put", "_pivot_solved"])
 def test_a_way_that_answers_otherwise_than_the_balances_is_none(
     wrong: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -42,7 +42,7 @@ def test_a_way_that_answers_otherwise_than_the_balances_is_none(
 
     def twice(*parts: object) -> object:
         found = right(*parts)
-        forms = found.values() if wrong == "_block" else [found]
+        forms = found.values() if wrong == "_pivot_solved" else [found]
         for form in forms:
             form.update({k: 2 * x for k, x in form.items()})
         return found
