@@ -14,6 +14,8 @@ TAKES = {
     "rigid_body": ("given->x", "given->x + 13", "given->x + 16", "r->y"),
     "rigid_body_jacobian": ("given->x", "given->x + 13", "given->x + 16", "r->y", "r->y + 13"),
 }
+DENSE = {"rigid_body_jacobian_dense": "rigid_body_jacobian"}
+"""Whole matrices, and the file that has them where DENSE is defined."""
 PARTS = {"rigid_body": ("attitude_rate", "velocity_rate", "spin_rate")}
 ROTATION = {"rigid_body": "unit"}
 GLUE = """\
@@ -45,7 +47,8 @@ def text(name: str) -> str:
 
 def candidate(problem: Problem) -> Candidate:
     """Return the hand-written function of a problem."""
-    name = problem.name
+    name = DENSE.get(problem.name, problem.name)
+    macros = ("DENSE",) if problem.name in DENSE else ()
     sources = (
         Source(f"{name}.c", text(f"{name}.c")),
         Source(f"{name}.h", text(f"{name}.h")),
@@ -53,4 +56,5 @@ def candidate(problem: Problem) -> Candidate:
     )
     glue = GLUE.format(name=name, sizes=sizes(problem), passed=", ".join(TAKES[name]))
     counted = (f"{name}.c", ("evaluate", *PARTS.get(name, ())))
-    return Candidate(AUTHOR, problem, sources, glue, counted, ROTATION.get(name, "homogeneous"))
+    rotation = ROTATION.get(name, "homogeneous")
+    return Candidate(AUTHOR, problem, sources, glue, counted, rotation, macros)

@@ -80,7 +80,7 @@ def _glue(problem: Problem, manifest: Mapping[str, Any], function: Mapping[str, 
     outputs = [a for a in function["arguments"] if a["direction"] == "out"]
     has_constants = any(a["type"] == "struct" for a in function["arguments"])
     takes = [problem.inputs.index(name) for a in inputs for name in a["components"]]
-    made = [name for a in outputs for name in a["components"]]
+    made = [name for a in outputs for name in _components(manifest, function, a)]
     wanted = [*problem.outputs, *(f"d({row})/d({column})" for row, column in problem.pattern)]
     return GLUE.format(
         header=manifest["files"]["f64"]["header"],
@@ -94,6 +94,17 @@ def _glue(problem: Problem, manifest: Mapping[str, Any], function: Mapping[str, 
         symbol=function["symbols"]["f64"],
         passed=", ".join(_passed(function["arguments"])),
     )
+
+
+def _components(
+    manifest: Mapping[str, Any], function: Mapping[str, Any], argument: Mapping[str, Any]
+) -> Sequence[str]:
+    """Return the names of an output's components; a whole Jacobian is told by its sparse one."""
+    of = function.get("same_as")
+    if of is None or argument["name"] != "jacobian":
+        return tuple(argument["components"])
+    pattern = _named(manifest["functions"], of)["sparsity"]["jacobian"]
+    return [f"d({row})/d({column})" for column in pattern["columns"] for row in pattern["rows"]]
 
 
 def _place(made: Sequence[str], name: str) -> int:

@@ -1,6 +1,6 @@
 """The problems of the bench: what goes in, what comes out, and which scene of ours solves it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 AXES = ("x", "y", "z")
 TENSOR = ("I_xx", "I_yy", "I_zz", "I_xy", "I_xz", "I_yz")
@@ -165,4 +165,15 @@ RIGID_JACOBIAN = Problem(
     _rigid_pattern(),
 )
 
-PROBLEMS = (FREE_BODY, PRINCIPAL, HEAVY_TOP, GYROSTAT, RIGID_BODY, RIGID_JACOBIAN)
+_WHOLE = tuple((row, column) for column in RIGID_JACOBIAN.inputs for row in RIGID_RATE)
+
+RIGID_DENSE = replace(
+    RIGID_JACOBIAN,
+    name="rigid_body_jacobian_dense",
+    says="the same, the whole matrix, 247 entries",
+    function="state_rate_jacobian_dense",
+    blocks=RIGID_BLOCKS + _jacobian_blocks(_WHOLE, len(RIGID_STATE)),
+    pattern=_WHOLE,
+)
+
+PROBLEMS = (FREE_BODY, PRINCIPAL, HEAVY_TOP, GYROSTAT, RIGID_BODY, RIGID_JACOBIAN, RIGID_DENSE)

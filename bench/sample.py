@@ -53,9 +53,8 @@ def _parameters(problem: Problem, kind: str, dice: random.Random) -> Row:
         "heavy_top": lambda: (principal[1], principal[0], mass, 9.80665, dice.uniform(0.01, 0.1)),
         "gyrostat": lambda: (*tensor(principal, dice), *_wheels(principal, dice)),
         "rigid_body": lambda: (mass, *tensor(principal, dice)),
-        "rigid_body_jacobian": lambda: (mass, *tensor(principal, dice)),
     }
-    return rows[problem.name]()
+    return rows[problem.scene]()
 
 
 def _wheels(principal: Triple, dice: random.Random) -> Row:

@@ -24,7 +24,7 @@ def truth(problem: Problem, row: Sequence[float], rotation: str) -> Column:
     ctx.prec = BITS
     p = [arb(value) for value in row[: len(problem.parameters)]]
     x = [arb(value) for value in row[len(problem.parameters) :]]
-    rate = RATES[problem.name]
+    rate = RATES[problem.scene]
     return rate(p, x, rotation) + _jacobian(problem, rate, p, x, rotation)
 
 
@@ -146,5 +146,4 @@ RATES: dict[str, Callable[[Column, Column, str], Column]] = {
     "heavy_top": _heavy_top,
     "gyrostat": _gyrostat,
     "rigid_body": _rigid_body,
-    "rigid_body_jacobian": _rigid_body,
 }

@@ -7,6 +7,20 @@
 
 #include "inverse.h"
 
+#ifdef DENSE
+/* The whole matrix of 13 by 19, column by column: where each entry that is not zero stands. */
+static const unsigned char at[66] = {
+    43, 44, 45, 46, 47, 48, 55, 57, 58, 59, 60, 61, 68, 69, 71, 72, 73, 74, 81, 82, 83, 85,
+    86, 87, 91, 105, 119, 133, 134, 135, 136, 140, 141, 142, 146, 147, 148, 149, 153, 154,
+    155, 159, 160, 161, 162, 166, 167, 168, 176, 177, 178, 189, 190, 191, 202, 203, 204,
+    218, 219, 220, 231, 232, 233, 244, 245, 246};
+#define J(n) jacobian[at[n]]
+#define CLEAR memset(jacobian, 0, 247 * sizeof *jacobian)
+#else
+#define J(n) jacobian[n]
+#define CLEAR (void)0
+#endif
+
 static void gyroscopic(const real I[3][3], const double w[3], real out[3][3])
 {
     /* d (-omega x I omega) / d omega_j = -e_j x I omega - omega x I e_j, with I - I_yy 1 for I. */
@@ -121,33 +135,34 @@ void evaluate(const constants *k, const double *state, const double *F, const do
     rate[11] = (k->k_xy * M_x + k->k_yy * M_y + k->k_yz * M_z) + half_y;
     rate[12] = (k->k_xz * M_x + k->k_yz * M_y + k->k_zz * M_z) + half_z;
 
+    CLEAR;
     /* by q_w: q_x, q_y, q_z, v */
-    jacobian[0] = o_x, jacobian[1] = o_y, jacobian[2] = o_z;
-    jacobian[3] = a_x, jacobian[4] = a_y, jacobian[5] = a_z;
+    J(0) = o_x, J(1) = o_y, J(2) = o_z;
+    J(3) = a_x, J(4) = a_y, J(5) = a_z;
     /* by q_x: q_w, q_y, q_z, v */
-    jacobian[6] = -o_x, jacobian[7] = -o_z, jacobian[8] = o_y;
-    jacobian[9] = b, jacobian[10] = -a_z, jacobian[11] = a_y;
+    J(6) = -o_x, J(7) = -o_z, J(8) = o_y;
+    J(9) = b, J(10) = -a_z, J(11) = a_y;
     /* by q_y: q_w, q_x, q_z, v */
-    jacobian[12] = -o_y, jacobian[13] = o_z, jacobian[14] = -o_x;
-    jacobian[15] = a_z, jacobian[16] = b, jacobian[17] = -a_x;
+    J(12) = -o_y, J(13) = o_z, J(14) = -o_x;
+    J(15) = a_z, J(16) = b, J(17) = -a_x;
     /* by q_z: q_w, q_x, q_y, v */
-    jacobian[18] = -o_z, jacobian[19] = -o_y, jacobian[20] = o_x;
-    jacobian[21] = -a_y, jacobian[22] = a_x, jacobian[23] = b;
+    J(18) = -o_z, J(19) = -o_y, J(20) = o_x;
+    J(21) = -a_y, J(22) = a_x, J(23) = b;
     /* by v: p */
-    jacobian[24] = 1, jacobian[25] = 1, jacobian[26] = 1;
+    J(24) = 1, J(25) = 1, J(26) = 1;
     /* by omega: q, omega */
-    jacobian[27] = -hx, jacobian[28] = hw, jacobian[29] = hz, jacobian[30] = -hy;
-    jacobian[31] = d_xx, jacobian[32] = d_yx, jacobian[33] = d_zx;
-    jacobian[34] = -hy, jacobian[35] = -hz, jacobian[36] = hw, jacobian[37] = hx;
-    jacobian[38] = d_xy, jacobian[39] = d_yy, jacobian[40] = d_zy;
-    jacobian[41] = -hz, jacobian[42] = hy, jacobian[43] = -hx, jacobian[44] = hw;
-    jacobian[45] = d_xz, jacobian[46] = d_yz, jacobian[47] = d_zz;
+    J(27) = -hx, J(28) = hw, J(29) = hz, J(30) = -hy;
+    J(31) = d_xx, J(32) = d_yx, J(33) = d_zx;
+    J(34) = -hy, J(35) = -hz, J(36) = hw, J(37) = hx;
+    J(38) = d_xy, J(39) = d_yy, J(40) = d_zy;
+    J(41) = -hz, J(42) = hy, J(43) = -hx, J(44) = hw;
+    J(45) = d_xz, J(46) = d_yz, J(47) = d_zz;
     /* by F: v */
-    jacobian[48] = r_xx, jacobian[49] = r_yx, jacobian[50] = r_zx;
-    jacobian[51] = r_xy, jacobian[52] = r_yy, jacobian[53] = r_zy;
-    jacobian[54] = r_xz, jacobian[55] = r_yz, jacobian[56] = r_zz;
+    J(48) = r_xx, J(49) = r_yx, J(50) = r_zx;
+    J(51) = r_xy, J(52) = r_yy, J(53) = r_zy;
+    J(54) = r_xz, J(55) = r_yz, J(56) = r_zz;
     /* by M: omega */
-    jacobian[57] = k->k_xx, jacobian[58] = k->k_xy, jacobian[59] = k->k_xz;
-    jacobian[60] = k->k_xy, jacobian[61] = k->k_yy, jacobian[62] = k->k_yz;
-    jacobian[63] = k->k_xz, jacobian[64] = k->k_yz, jacobian[65] = k->k_zz;
+    J(57) = k->k_xx, J(58) = k->k_xy, J(59) = k->k_xz;
+    J(60) = k->k_xy, J(61) = k->k_yy, J(62) = k->k_yz;
+    J(63) = k->k_xz, J(64) = k->k_yz, J(65) = k->k_zz;
 }

@@ -38,14 +38,16 @@ def candidate(problem: Problem, equations: Equations | None = None) -> Candidate
     """
     import casadi as ca
 
-    stated = equations or EQUATIONS[problem.name]
+    stated = equations or EQUATIONS[problem.scene]
 
     p = ca.SX.sym("p", len(problem.parameters))
     x = ca.SX.sym("x", len(problem.inputs))
     rate: Any = ca.vertcat(*stated(ca.vertsplit(p), ca.vertsplit(x)))
     results = [rate]
     if problem.pattern:
-        results.append(ca.jacobian(rate, x))
+        jacobian = ca.jacobian(rate, x)
+        whole = len(problem.pattern) == jacobian.numel()
+        results.append(ca.densify(jacobian) if whole else jacobian)
     sources = _files(ca.Function("candidate", [p, x], ca.cse(results)))
     glue = GLUE.format(sizes=sizes(problem), load=LOAD, store=STORE, outputs=len(problem.outputs))
     counted = ("candidate.c", ("casadi_f0",))
@@ -136,5 +138,4 @@ EQUATIONS: dict[str, Equations] = {
     "heavy_top": _heavy_top,
     "gyrostat": _gyrostat,
     "rigid_body": _rigid_body,
-    "rigid_body_jacobian": _rigid_body,
 }

@@ -17,7 +17,7 @@ Expressions = list[Any]
 
 def candidate(problem: Problem) -> Candidate:
     """Return PyDy's answer to a problem. Raises ImportError where PyDy is not installed."""
-    parameters, inputs, rates = EQUATIONS[problem.name]()
+    parameters, inputs, rates = EQUATIONS[problem.scene]()
     return _emitted(AUTHOR, problem, parameters, inputs, rates)
 
 
@@ -25,7 +25,7 @@ def simplified(problem: Problem) -> Candidate:
     """Return the same after SymPy's ``simplify``, which helps small equations only."""
     from sympy import simplify
 
-    parameters, inputs, rates = EQUATIONS[problem.name]()
+    parameters, inputs, rates = EQUATIONS[problem.scene]()
     return _emitted(SIMPLIFIED, problem, parameters, inputs, [simplify(r) for r in rates])
 
 
@@ -236,5 +236,4 @@ EQUATIONS: dict[str, Callable[[], tuple[Expressions, Expressions, Expressions]]]
     "heavy_top": _heavy_top,
     "gyrostat": _gyrostat,
     "rigid_body": _rigid_body,
-    "rigid_body_jacobian": _rigid_body,
 }

@@ -49,7 +49,7 @@ def candidate(problem: Problem, equations: Equations | None = None) -> Candidate
 
     equations : of the problem, from (symforce, parameters, inputs); ``EQUATIONS`` has them if None
     """
-    stated = equations or EQUATIONS[problem.name]
+    stated = equations or EQUATIONS[problem.scene]
     sf = _symbolic()
     from symforce.codegen import Codegen, CppConfig
     from symforce.values import Values
@@ -170,5 +170,4 @@ EQUATIONS: dict[str, Equations] = {
     "heavy_top": _heavy_top,
     "gyrostat": _gyrostat,
     "rigid_body": _rigid_body,
-    "rigid_body_jacobian": _rigid_body,
 }

@@ -67,7 +67,7 @@ def test_a_wrong_sign_is_seen(tmp_path) -> None:
 
 def test_a_wrong_entry_of_the_jacobian_is_seen(tmp_path) -> None:
     right = handwritten.candidate(RIGID_JACOBIAN)
-    text = right.sources[0].text.replace("jacobian[10] = -a_z", "jacobian[10] = a_z")
+    text = right.sources[0].text.replace("J(10) = -a_z", "J(10) = a_z")
     wrong = replace(right, sources=(Source("rigid_body_jacobian.c", text), *right.sources[1:]))
     assert errors(wrong, tmp_path).largest > 1e9
 
