@@ -1,6 +1,7 @@
 """Generated C on its targets: built, run in emulators and measured; figures may be kept."""
 
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from pathlib import Path
 
 from derive.check.target import Tried as Tried
@@ -11,7 +12,7 @@ from derive.emit.files import write
 from derive.emit.on_target import kept, path_of, to_text
 from derive.scene.table import one_of
 from derive.solve.handle import Handle, silent
-from derive.solve.several import every, require_posed
+from derive.solve.several import all_made, every, require_posed
 from derive.solve.told import path
 
 TARGETS = (*CORES, ALL)
@@ -36,14 +37,21 @@ def on_targets(
     require_tools(cores)
     require_posed(scenes)
     folder = None if keep_in is None else path("folder", keep_in)
-    for scene in every(scenes):
-        rows: list[Tried] = []
-        for core in cores:
-            told(f"{scene.name} on {core.title}")
-            rows += tried_on(scene.library, core)
-        if folder is not None:
-            keep(scene, rows, cores, folder)
-        yield from rows
+    runs = [(scene, core) for scene in every(scenes) for core in cores]
+    found: dict[int, list[Tried]] = {}
+    for place, rows in all_made([partial(_tried, *run) for run in runs]):
+        found[place] = rows
+        told(f"{len(found)} of {len(runs)} runs, {runs[place][0].name} on {runs[place][1].title}")
+        first = place - place % len(cores)
+        of_scene = [found.get(n) for n in range(first, first + len(cores))]
+        if folder is not None and None not in of_scene:
+            keep(runs[place][0], [row for some in of_scene for row in some or ()], cores, folder)
+    for place in range(len(runs)):
+        yield from found[place]
+
+
+def _tried(scene: Handle, core: Core) -> list[Tried]:
+    return tried_on(scene.library, core)
 
 
 def keep(scene: Handle, rows: Sequence[Tried], cores: Sequence[Core], folder: Path) -> None:
