@@ -70,6 +70,7 @@ def test_what_is_held_by_constraints_and_what_is_not_free_have_no_peer() -> None
     assert asking((scenes / "two_blade.toml").read_text(encoding="utf-8"), "blade") is None
 
 
+@pytest.mark.long
 def test_a_machine_of_the_bench_is_not_dearer_than_sympy() -> None:
     found = {n: s for n, s in machines(["bench/machines"]).items() if n in ("segway", "gimbals")}
     assert len(found) == 2

@@ -72,6 +72,7 @@ wind = { on = "sled", force = [1, 2, 0] }
 """
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("along", ["inertial", "bar"])
 def test_points_that_meet_meet_along_other_axes(along: str) -> None:
     text = (HELD / "four_bar_closed.toml").read_text(encoding="utf-8")

@@ -62,7 +62,8 @@ def test_a_parallelogram_swings_as_a_pendulum(q: float) -> None:
     assert found["q_2_ddot"] == pytest.approx(-should, rel=ROUNDED)
 
 
-@pytest.mark.parametrize("a", [0.2, pytest.param(-2.5, marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("a", [0.2, -2.5])
 def test_a_slider_crank_moves_as_its_closed_form(a: float) -> None:
     m_1, m_2, m_3, r, l, tau, rate = map(mpf, (1.5, 1.25, 1.75, 0.125, 0.4375, 5, 3))  # noqa: E741
 
@@ -93,6 +94,7 @@ def test_a_sleigh_moves_as_chaplygin_says() -> None:
     assert ahead == pytest.approx(a * w * w, rel=ROUNDED)
 
 
+@pytest.mark.long
 def test_a_blade_by_points_is_the_blade_by_its_formula() -> None:
     points = 'on = "sled"\nequal = "velocities"\nalong = "sled"\naxes = ["y"]'
     text = TEXTS["sleigh"].replace('zero = "y_dot*cos(psi) - x_dot*sin(psi)"', points)

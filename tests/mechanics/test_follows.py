@@ -41,6 +41,7 @@ def following(own: Library) -> list[str]:
     return [m.name for m in (*scene.coordinates, *scene.speeds) if m.dependent]
 
 
+@pytest.mark.long
 def test_four_bars_are_small_in_one_angle_as_a_pendulum() -> None:
     own = library(parse_scene(SMALL, "four_bars"))
     assert following(own) == ["q_2", "q_3"]
@@ -53,6 +54,7 @@ def test_four_bars_are_small_in_one_angle_as_a_pendulum() -> None:
     assert [v.outcome for v in clouds(own, each)] == ["holds"]
 
 
+@pytest.mark.long
 def test_the_bicycle_is_small_in_lean_and_steer_whoever_chooses() -> None:
     lines = [one for one in BICYCLE.splitlines() if not one.startswith("dependent")]
     own = mechanism(parse_scene("\n".join(lines), "bicycle"))

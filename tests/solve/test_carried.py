@@ -127,6 +127,7 @@ def test_an_example_is_short_and_lies_in_its_range(low: float, high: float, show
     assert [example(-1, 1, f"q_{part}") for part in "wxyz"] == ["1", "0", "0", "0"]
 
 
+@pytest.mark.long
 def test_roots_are_carried_into_frequencies_and_limits_of_stability() -> None:
     (frequency,) = hoop().frequencies(VALUES)
     assert frequency == pytest.approx(8.0 * sin(acos(0.6125)), rel=1e-9)

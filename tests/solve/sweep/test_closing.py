@@ -69,6 +69,7 @@ def test_what_varies_stays_as_it_is_drawn(tmp_path: Path) -> None:
     assert np.abs(found["y_dot@0"] - found["x_dot"] * np.tan(found["psi"])).max() < ROUNDED
 
 
+@pytest.mark.long
 def test_chunks_and_the_want_of_a_compiler_change_no_bit_of_a_start(
     sled: derive.Ensemble, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -96,6 +97,7 @@ def test_a_start_that_is_not_brought_on_is_noticed(
     assert np.abs(slip).max() > 0.01
 
 
+@pytest.mark.long
 def test_an_attitude_that_varies_by_components_begins_at_length_one(tmp_path: Path) -> None:
     own = derive.load("tumbling_body")
     held = {"I_xx": 1.44, "I_yy": 1.64, "I_zz": 1.84, "omega_x": 1, "omega_y": 1, "omega_z": 1,
@@ -110,12 +112,14 @@ def test_an_attitude_that_varies_by_components_begins_at_length_one(tmp_path: Pa
     assert line.states["attitude_x"][-1] == pytest.approx(found["attitude_x@end"][5], abs=CLOSE)
 
 
+@pytest.mark.long
 def test_the_report_finds_a_step_for_what_is_held(tmp_path: Path) -> None:
     own = swept_sled(tmp_path, step=None, samples=64)
     assert own.says.endswith("keeps below 1e-06 over 0.5 s from the hardest states found")
     assert own.halved["psi@end"] < 1e-6
 
 
+@pytest.mark.long
 def test_where_too_much_varies_all_of_it_is_moved_and_said(tmp_path: Path) -> None:
     vary = TURNED | {"x_dot": "normal(1.2, 0.1)", "y_dot": f"normal({MIDDLE:.17g}, 0.1)"}
     own = swept_sled(tmp_path, vary=vary, values=SLED | {"psi_dot": 0.5})
@@ -126,6 +130,7 @@ def test_where_too_much_varies_all_of_it_is_moved_and_said(tmp_path: Path) -> No
     assert np.abs(found["x_dot@0"] - found["x_dot"]).max() > 0.01
 
 
+@pytest.mark.long
 def test_a_middle_that_is_far_off_is_refused_with_a_state_that_is_not(tmp_path: Path) -> None:
     with pytest.raises(derive.DeriveError) as refused:
         swept_sled(tmp_path, values=BLADE | {"y_dot": 0.2})

@@ -66,6 +66,7 @@ def is_left(group: int) -> bool:
     return True
 
 
+@pytest.mark.long
 def test_a_killed_sweep_leaves_no_process_and_goes_on_with_the_same_bits(tmp_path: Path) -> None:
     derive.load("sleeping_top").library.printed()
     folder = tmp_path / "runs"
@@ -91,6 +92,7 @@ def test_a_key_stops_a_sweep_in_one_line(tmp_path: Path, capfd: pytest.CaptureFi
     assert len(parts_of(folder)) < 200
 
 
+@pytest.mark.long
 def test_a_folder_that_was_moved_and_a_sweep_that_is_at_work(tmp_path: Path) -> None:
     whole = swept_top(tmp_path / "whole")
     with started(to_the_end, tmp_path / "first", 2) as group:

@@ -131,6 +131,7 @@ def test_pandas_and_duckdb_read_the_folder(top: derive.Ensemble) -> None:
     assert '"seed": 7' in (top.folder / MANIFEST).read_text()
 
 
+@pytest.mark.long
 def test_without_a_compiler_casadi_gives_the_same_bits_and_is_named(
     top: derive.Ensemble, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
