@@ -11,14 +11,19 @@ import sys
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from time import process_time
+from typing import Any
 
+import numpy as np
 from mpmath import mp
 from rich.table import Table
 from sympy import Expr, Matrix, Pow, Symbol, cse, preorder_traversal
 
+import derive
 from bench.chains import chain
 from bench.kane import KaneEquations, equations
+from bench.peers.pinocchio import GRAVITY, LENGTH, MASS, Chain, chains, operations
 from derive.command.terminal import console
 from derive.library.library import library
 from derive.mechanics.mechanism import Mechanism, mechanism
@@ -167,17 +172,39 @@ def _operations(e: Expr) -> int:
     return 0
 
 
-def chains_beside(chains: Iterable[ChainOfRods]) -> Table:
-    """Return what chains take, ours beside others."""
-    found = Table("machine", "ours", "of these /", "seconds", "SymPy", "seconds", "known")
+def chains_beside(chains: Iterable[ChainOfRods], pinocchios: Chain | None) -> Table:
+    """Return what chains take, ours beside others; of these Pinocchio's where it is installed."""
+    names = ("machine", "ours", "of these /", "seconds", "SymPy", "seconds", "Pinocchio", "known")
+    found = Table(*names)
     for own in chains:
         scene = parse_scene(chain(own.axes, on_a_cart=own.on_a_cart), "chain")
         cost = ours(scene)
         theirs = by_kane(scene) if len(own.axes) <= MOST_OF_SYMPY else None
         beside = (str(theirs.flops), f"{theirs.seconds:.1f}") if theirs else ("", "")
         figures = str(cost.flops), str(cost.divisions), f"{cost.seconds:.1f}"
-        found.add_row(own.name, *figures, *beside, str(own.known or ""))
+        peer = pinocchios(own.axes) if pinocchios and not own.on_a_cart else None
+        told = str(operations(peer)) if peer and alike(own.axes, peer) else ""
+        found.add_row(own.name, *figures, *beside, told, str(own.known or ""))
     return found
+
+
+def alike(axes: str, theirs: Any) -> bool:
+    """Tell whether a chain of Pinocchio's accelerates as ours does. Raises ArithmeticError if not.
+
+    theirs : CasADi's function of angles and rates
+    """
+    angles = {f"q_{k}": 0.3 * k - 0.7 for k in range(1, len(axes) + 1)}
+    rates = {f"{name}_dot": 0.9 - 0.4 * x for name, x in angles.items()}
+    with TemporaryDirectory() as folder:
+        file = Path(folder) / "chain.toml"
+        file.write_text(chain(axes), encoding="utf-8")
+        own = derive.load(file).function("accelerations")
+        given = {"m": MASS, "l": LENGTH, "g": GRAVITY, **angles, **rates}
+        found = own(**{q.name: given[q.name] for q in (*own.inputs, *own.parameters)})
+    other = np.array(theirs(list(angles.values()), list(rates.values()))).ravel()
+    if not np.allclose(np.ravel(found), other, rtol=1e-10, atol=1e-10):
+        raise ArithmeticError(f"{axes}: {found} here, {other} by Pinocchio")
+    return True
 
 
 def machines_beside(scenes: dict[str, Scene]) -> Table:
@@ -204,7 +231,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--only", nargs="*", metavar="FOLDER", help="machines of these alone")
     given = parser.parse_args(arguments)
     if given.only is None:
-        console.print(chains_beside(own for own in CHAINS if len(own.axes) <= given.most))
+        with TemporaryDirectory() as folder:
+            try:
+                peer = chains(Path(folder))
+            except ImportError as absent:
+                peer = None
+                console.print(f"Pinocchio is not run: {absent}")
+            own = [own for own in CHAINS if len(own.axes) <= given.most]
+            console.print(chains_beside(own, peer))
     console.print(machines_beside(machines(given.only or FOLDERS)))
     return 0
 
