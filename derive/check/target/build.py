@@ -117,7 +117,7 @@ def _sizes(core: Core, folder: Path) -> dict[str, Bytes]:
     return {
         symbol: Bytes(*_taken(_closure(home, reached), sections), own[symbol])
         for symbol, home in homes.items()
-        if home == f".text.{symbol}" and symbol in own
+        if home in (f".text.{symbol}", f".text.unlikely.{symbol}") and symbol in own
     }
 
 
