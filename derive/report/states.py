@@ -148,7 +148,7 @@ def rates_at(library: Library, start: Begun) -> dict[str, Column]:
     equations, names = rate_equations(library)
     wide: Mapping[str, Any] = dict(zip(start.names, start.columns, strict=True))
     with np.errstate(all="ignore"):
-        found = solution(equations, wide, (), DOUBLES)
+        found = solution(equations, wide, (), DOUBLES).unknowns()
     states = [c for q in library.vocabulary.states for c in q.components]
     values = (np.broadcast_to(np.asarray(found[n].value, float), (len(start),)) for n in names)
     return dict(zip(states, values, strict=True))

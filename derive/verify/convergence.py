@@ -92,7 +92,7 @@ def right_hand_side(library: Library, values: Mapping[str, Any]) -> RightHandSid
 
     def rate(state: StateVector) -> StateVector:
         given = {**values, **dict(zip(states, state, strict=True))}
-        found = solution(equations, given, (), BALLS)
+        found = solution(equations, given, (), BALLS).unknowns()
         return [found[name].value.mid() for name in rates]
 
     return rate

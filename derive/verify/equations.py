@@ -52,6 +52,18 @@ class Equations:
     blocks: tuple[Block, ...]
 
     @cached_property
+    def signs(self) -> tuple[int, ...]:
+        """Return of each block 1 or -1 if that is its matrix, most being definitions, else 0."""
+        return tuple(self._sign(block.matrix) for block in self.blocks)
+
+    def _sign(self, matrix: tuple[tuple[Sum, ...], ...]) -> int:
+        entries = [part for row in matrix for entry in row for part in entry]
+        if len(matrix) != 1 or len(entries) != 1 or entries[0].factors:
+            return 0
+        coefficient = self.coefficients[entries[0].coefficient]
+        return next((sign for sign in (1, -1) if coefficient == (((), Fraction(sign)),)), 0)
+
+    @cached_property
     def functions(self) -> dict[int, frozenset[int]]:
         """Return the atoms that are functions, each with the atoms that it is made of."""
         return {

@@ -28,7 +28,7 @@ from derive.scene.formula import Arithmetic
 from derive.verify.columns import arithmetics, planned, supplied
 from derive.verify.draw import Sampled
 from derive.verify.operators import LONG_FLOATS
-from derive.verify.reference import BALLS, BITS, reference
+from derive.verify.reference import BALLS, BITS, References, references
 from derive.verify.sample import Sample
 from derive.verify.scale import (
     around,
@@ -91,9 +91,21 @@ def should(
     for base, equations in by.equations.items():
         own = [f for f in functions if base_of(f) == base]
         columns = tuple(dict.fromkeys(c for f in own for c in columns_of(f)))
-        true = [reference(equations, s.values, columns, arithmetic) for s in each if own]
+        if not own:
+            continue
+        true = references(equations, [s.values for s in each], columns, arithmetic)
         for program in own:
-            yield program, [[Expected(*of) for of in entries(program, at)] for at in true]
+            yield program, _by_sample(program, true, len(each))
+
+
+def _by_sample(program: Program, true: References, count: int) -> list[list[Expected]]:
+    """Return what each component should be, a row a sample."""
+    columns = [
+        (np.broadcast_to(x, count).tolist() for x in (value, scale, true.gains[row]))
+        for row, value, scale in entries(program, true.known)
+    ]
+    each = [[Expected(*of) for of in zip(*parts, strict=True)] for parts in columns]
+    return [list(row) for row in zip(*each, strict=True)]
 
 
 def should_move(by: Sampled, program: Program, each: Sequence[Sample]) -> list[list[Expected]]:

@@ -98,7 +98,7 @@ def _prove_in_balls(library: Library, every: Mapping[str, Equations], number: in
 
 
 def _exists(equations: Equations, at: ExactSample) -> bool:
-    true = solution(equations, at.values, (), at.arithmetic)
+    true = solution(equations, at.values, (), at.arithmetic).unknowns()
     return all(known.value.is_finite() for known in true.values())
 
 
@@ -128,7 +128,7 @@ def _prove_at(library: Library, every: Mapping[str, Equations], at: ExactSample)
             f for f in (*library.functions, *library.rates) if f.name.removesuffix(JACOBIAN) == name
         ]
         columns = {c for f in functions for s in (f.sparsity or {}).values() for c in s.columns}
-        true = solution(equations, at.values, columns, at.arithmetic)
+        true = solution(equations, at.values, columns, at.arithmetic).unknowns()
         for program in functions:
             fault = first_fault(program, true, constants, at)
             if fault:

@@ -22,7 +22,7 @@ from derive.verify.draw import Sampled
 from derive.verify.hard_bodies import BODIES
 from derive.verify.operators import IN_DOUBLES, Column
 from derive.verify.sample import Sample, Samples
-from derive.verify.solution import Solved, solution
+from derive.verify.solution import Solved, gains, solution
 
 ANGLES = "angles"
 STATE_RATE = "state_rate"
@@ -95,22 +95,32 @@ def columns_of(program: Program) -> tuple[str, ...]:
     return tuple(c for pattern in (program.sparsity or {}).values() for c in pattern.columns)
 
 
-def entries(program: Program, found: Mapping[str, Solved]) -> Iterator[tuple[Any, Any, Any]]:
-    """Yield value, largest product and gain of each component of a function of the lecture."""
+def entries(program: Program, found: Mapping[str, Solved]) -> Iterator[tuple[str, Any, Any]]:
+    """Yield of each component of a function of the lecture whose it is, value, largest product."""
     for q in program.outputs:
         pattern = (program.sparsity or {}).get(q.name)
         if pattern is None:
-            yield from ((found[c].value, found[c].scale, found[c].gain) for c in q.components)
+            yield from ((c, found[c].value, found[c].scale) for c in q.components)
             continue
         for i, k in pattern.places():
-            row = found[pattern.rows[i]]
-            yield (*row.slopes.get(pattern.columns[k], (arb(0), 0.0)), row.gain)
+            row = pattern.rows[i]
+            yield (row, *found[row].slopes.get(pattern.columns[k], (arb(0), 0.0)))
 
 
 def lecture_scales(by: Sampled, program: Program, wide: InDouble) -> list[Column]:
     """Return the largest product in the equation of each component of a function of the lecture."""
-    found = solution(by.equations[base_of(program)], wide, columns_of(program), DOUBLES)
-    return [np.maximum(scale, by.smallest * gain) for _, scale, gain in entries(program, found)]
+    solved = solution(by.equations[base_of(program)], wide, columns_of(program), DOUBLES)
+    every = [(row, scale) for row, _, scale in entries(program, solved.unknowns())]
+    most = gains(solved, DOUBLES, _ends)
+    if all(_ends(scale)[0] >= by.smallest * most[row] for row, scale in every):
+        return [np.asarray(scale) for _, scale in every]
+    gained = gains(solved, DOUBLES, lambda size: (size, size))
+    return [np.maximum(scale, by.smallest * gained[row]) for row, scale in every]
+
+
+def _ends(sizes: Column) -> tuple[float, float]:
+    """Return the smallest and the largest of sizes."""
+    return float(np.min(sizes, initial=np.inf)), float(np.max(sizes, initial=0.0))
 
 
 def with_values(of: Sampled, drawn: Samples) -> Samples:
@@ -177,7 +187,7 @@ def _added(by: Sampled, wide: InDouble) -> dict[str, Column]:
     rates = [c for q in by.library.problems[STATE_RATE].outputs for c in q.components]
     step = np.abs(wide["time_step"])
     for _ in range(2):
-        found = solution(by.equations[STATE_RATE], wide, (), DOUBLES, largest)
+        found = solution(by.equations[STATE_RATE], wide, (), DOUBLES, largest).unknowns()
         grown = {c: step * found[rate].scale for c, rate in zip(names, rates, strict=True)}
         largest = {c: np.maximum(np.abs(wide[c]), grown[c]) for c in largest}
     return largest

@@ -7,10 +7,10 @@ larger, the measure of its rounding errors: no sensible order of operations roun
 larger.
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import reduce
+from functools import partial, reduce
 from operator import add
 from types import MappingProxyType
 from typing import Any
@@ -21,20 +21,37 @@ from derive.verify.operators import SLOPES
 from derive.verify.valuation import Atom, raised, value
 
 Slopes = dict[str, tuple[Any, Any]]
+Matrix = Sequence[Sequence[Any]]
 NO_SCALES: Mapping[str, Any] = MappingProxyType({})
+ONE: Coefficient = (((), Fraction(1)),)
 
 
 @dataclass(frozen=True)
 class Solved:
-    """A value, its scale, and its slopes by column, each with its scale.
-
-    gain : how far an error of what it is made of is magnified in it, at least 1
-    """
+    """A value, its scale, and its slopes by column, each with its scale."""
 
     value: Any
     scale: Any
     slopes: Slopes
-    gain: Any = 1.0
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Equations solved: what each atom is by its place.
+
+    coefficients : each with its size, None for one: nothing is multiplied by it
+    inverses     : of the matrix of every block, the sizes of all entries
+    """
+
+    equations: Equations
+    known: Mapping[int, Solved]
+    coefficients: Sequence[tuple[Any, Any]]
+    inverses: Sequence[Matrix]
+
+    def unknowns(self) -> dict[str, Solved]:
+        """Return every unknown by its component's name."""
+        places = (atom for block in self.equations.blocks for atom in block.unknowns)
+        return {self.equations.names[atom]: self.known[atom] for atom in places}
 
 
 def solution(
@@ -43,8 +60,8 @@ def solution(
     columns: Iterable[str],
     arithmetic: Arithmetic,
     scales: Mapping[str, Any] = NO_SCALES,
-) -> dict[str, Solved]:
-    """Return every unknown by its component's name, with its slopes by the ``columns``.
+) -> Solution:
+    """Return every unknown of equations, with its slopes by the ``columns``.
 
     scales : of what is given and was itself the sum of larger terms
     """
@@ -52,20 +69,25 @@ def solution(
     _apply(equations, known, arithmetic)
     fixed = {place: known[place].value for place in equations.fixed}
     coefficients = [_coefficient(c, fixed, arithmetic) for c in equations.coefficients]
-    found: dict[str, Solved] = {}
-    for block in equations.blocks:
-        matrix = _matrix(block, known, coefficients, arithmetic)
+    inverses: list[Matrix] = []
+    for block, sign in zip(equations.blocks, equations.signs, strict=True):
         right = [_summed(s, known, coefficients, arithmetic) for s in block.right]
-        for atom, solved in zip(block.unknowns, _solved(matrix, right, arithmetic), strict=True):
-            known[atom] = found[equations.names[atom]] = solved
+        if sign:
+            inverse, found = _signed(sign, right[0])
+        else:
+            inverse, found = _solved(block, right, known, coefficients, arithmetic)
+        inverses.append(inverse)
+        known |= dict(zip(block.unknowns, found, strict=True))
         _apply(equations, known, arithmetic)
-    return found
+    return Solution(equations, known, coefficients, inverses)
 
 
 def _coefficient(
     polynomial: Coefficient, fixed: Mapping[int, Any], arithmetic: Arithmetic
 ) -> tuple[Any, Any]:
     """Return a sum of products of parameters, and its size: that of the largest product."""
+    if polynomial == ONE:
+        return None, None
     products = [value((term,), fixed, arithmetic) for term in polynomial]
     return reduce(add, products), arithmetic["coefficient"](products)
 
@@ -99,7 +121,7 @@ def _applied(atom: Atom, known: Mapping[int, Solved], arithmetic: Arithmetic) ->
     number, size = arithmetic["number"], arithmetic["size"]
     if atom.kind == "pi":
         return Solved(arithmetic["pi"](), size(arithmetic["pi"]()), {})
-    coefficients = [(number(c), size(number(c))) for _, c in atom.inner]
+    coefficients = [(None, None) if c == 1 else (number(c), size(number(c))) for _, c in atom.inner]
     parts = tuple(Part(n, monomial) for n, (monomial, _) in enumerate(atom.inner))
     inner = _summed(parts, known, coefficients, arithmetic)
     x = inner.value
@@ -114,26 +136,45 @@ def _applied(atom: Atom, known: Mapping[int, Solved], arithmetic: Arithmetic) ->
 def _summed(
     parts: Sum,
     known: Mapping[int, Solved],
-    coefficients: Sequence[tuple[Any, float]],
+    coefficients: Sequence[tuple[Any, Any]],
     arithmetic: Arithmetic,
 ) -> Solved:
     """Return a sum of terms with its largest product, and the same for every slope."""
     most, slopes = arithmetic["most"], Slopes()
-    total, largest, gain = arithmetic["number"](Fraction(0)), 0.0, 1.0
+    terms = [_term(part, known, coefficients, arithmetic) for part in parts]
+    if not terms:
+        return Solved(arithmetic["number"](Fraction(0)), 0.0, slopes)
+    total, largest = reduce(add, (v for v, _ in terms)), reduce(most, (s for _, s in terms))
     for part in parts:
-        product, size = coefficients[part.coefficient]
-        for atom, power in part.factors:
-            factor = known[atom]
-            product = product * raised(factor.value, power)
-            size = size * _power_scale(factor, power, arithmetic)
-        total, largest = total + product, most(largest, size)
-        for place, (atom, _) in enumerate(part.factors):
-            gain = most(gain, known[atom].gain * _partial(part, place, known, coefficients)[1])
         for place, (atom, _) in enumerate(part.factors):
             if known[atom].slopes:
                 partial = _partial(part, place, known, coefficients)
                 _add_slopes(slopes, known[atom].slopes, *partial, most)
-    return Solved(*_at_least(total, largest, arithmetic), _all_at_least(slopes, arithmetic), gain)
+    return Solved(*_at_least(total, largest, arithmetic), _all_at_least(slopes, arithmetic))
+
+
+def _term(
+    part: Part,
+    known: Mapping[int, Solved],
+    coefficients: Sequence[tuple[Any, Any]],
+    arithmetic: Arithmetic,
+) -> tuple[Any, Any]:
+    """Return a term and its size."""
+    product, size = coefficients[part.coefficient]
+    for atom, power in part.factors:
+        factor = known[atom]
+        product = _times(product, raised(factor.value, power))
+        size = _times(size, _power_scale(factor, power, arithmetic))
+    return _or_one(product, size, arithmetic)
+
+
+def _times(one: Any, other: Any) -> Any:
+    """Return a product; None is one."""
+    return other if one is None else one * other
+
+
+def _or_one(product: Any, size: Any, arithmetic: Arithmetic) -> tuple[Any, Any]:
+    return (arithmetic["number"](Fraction(1)), 1.0) if product is None else (product, size)
 
 
 def _at_least(value: Any, scale: Any, arithmetic: Arithmetic) -> tuple[Any, Any]:
@@ -154,18 +195,24 @@ def _power_scale(factor: Solved, power: int, arithmetic: Arithmetic) -> Any:
 
 
 def _partial(
-    part: Part, place: int, known: Mapping[int, Solved], coefficients: Sequence[tuple[Any, float]]
-) -> tuple[Any, float]:
+    part: Part, place: int, known: Mapping[int, Solved], coefficients: Sequence[tuple[Any, Any]]
+) -> tuple[Any, Any]:
     """Return a term's derivative by its factor at ``place``, and its size."""
     product, size = coefficients[part.coefficient]
-    for other, (atom, power) in enumerate(part.factors):
-        factor, left = known[atom], power - (other == place)
-        if other == place and power != 1:
-            product, size = product * power, size * abs(power)
+    for atom, times, left in _differentiated(part, place):
+        factor = known[atom]
+        if times != 1:
+            product, size = _times(product, times), _times(size, float(abs(times)))
         if left:
-            product = product * raised(factor.value, left)
-            size = size * raised(factor.scale, left)
+            product = _times(product, raised(factor.value, left))
+            size = _times(size, raised(factor.scale, left))
     return product, size
+
+
+def _differentiated(part: Part, place: int) -> Iterator[tuple[int, int, int]]:
+    """Yield of a term's derivative each atom, what it is multiplied by, and the power left."""
+    for other, (atom, power) in enumerate(part.factors):
+        yield (atom, power, power - 1) if other == place else (atom, 1, power)
 
 
 def _add_slopes(
@@ -173,11 +220,12 @@ def _add_slopes(
 ) -> None:
     """Add ``product`` times the slopes ``more``; a slope's scale is its largest product."""
     for column, (slope, scale) in more.items():
+        own, its = _times(product, slope), _times(size, scale)
         if column in slopes:
             before, largest = slopes[column]
-            slopes[column] = before + product * slope, most(largest, size * scale)
+            slopes[column] = before + own, most(largest, its)
         else:
-            slopes[column] = product * slope, size * scale
+            slopes[column] = own, its
 
 
 def _matrix(
@@ -193,26 +241,33 @@ def _matrix(
     return [[replace(entry, scale=0.0) for entry in row] for row in rows]
 
 
+def _signed(sign: int, right: Solved) -> tuple[Matrix, list[Solved]]:
+    """Return the inverse of 1 or -1 without its sign, and what an equation says that has it for a matrix."""
+    if sign > 0:
+        return ((1.0,),), [right]
+    slopes = {c: (-value, scale) for c, (value, scale) in right.slopes.items()}
+    return ((1.0,),), [Solved(-right.value, right.scale, slopes)]
+
+
 def _solved(
-    matrix: list[list[Solved]], right: list[Solved], arithmetic: Arithmetic
-) -> list[Solved]:
-    """Return the unknowns of a block and their slopes: A u' = b' - A' u."""
+    block: Block,
+    right: list[Solved],
+    known: Mapping[int, Solved],
+    coefficients: Sequence[tuple[Any, Any]],
+    arithmetic: Arithmetic,
+) -> tuple[Matrix, list[Solved]]:
+    """Return the sizes of a block's inverse, its unknowns and their slopes: A u' = b' - A' u."""
+    matrix = _matrix(block, known, coefficients, arithmetic)
     inverse = arithmetic["inverse"]([[entry.value for entry in row] for row in matrix])
-    solved = _through(matrix, inverse, [(r.value, r.scale) for r in right], arithmetic)
+    sizes = [[arithmetic["size"](entry) for entry in row] for row in inverse]
+    through = partial(_through, matrix, inverse, sizes, arithmetic)
+    solved = through([(r.value, r.scale) for r in right])
     loads = [_load(row, load, solved, arithmetic) for row, load in zip(matrix, right, strict=True)]
     columns = dict.fromkeys(c for load in loads for c in load)
     nothing = (right[0].value * 0, 0.0)
-    slopes = {
-        c: _through(matrix, inverse, [load.get(c, nothing) for load in loads], arithmetic)
-        for c in columns
-    }
-    sizes = [[arithmetic["size"](entry) for entry in row] for row in inverse]
-    most = arithmetic["most"]
-    gains = [[size * r.gain for size, r in zip(row, right, strict=True)] for row in sizes]
-    return [
-        Solved(*solved[k], {c: slopes[c][k] for c in columns}, reduce(most, row, 1.0))
-        for k, row in enumerate(gains)
-    ]
+    slopes = {c: through([load.get(c, nothing) for load in loads]) for c in columns}
+    each = [Solved(*own, {c: slopes[c][k] for c in columns}) for k, own in enumerate(solved)]
+    return sizes, each
 
 
 def _load(
@@ -227,9 +282,10 @@ def _load(
 
 def _through(
     matrix: Sequence[Sequence[Solved]],
-    inverse: Sequence[Sequence[Any]],
-    right: Sequence[tuple[Any, Any]],
+    inverse: Matrix,
+    inverse_sizes: Matrix,
     arithmetic: Arithmetic,
+    right: Sequence[tuple[Any, Any]],
 ) -> list[tuple[Any, Any]]:
     """Return what a matrix makes of a right side, each with its largest product.
 
@@ -241,5 +297,44 @@ def _through(
         reduce(most, (e.scale * size(u) for e, u in zip(row, values, strict=True)), scale)
         for row, (_, scale) in zip(matrix, right, strict=True)
     ]
-    sizes = [reduce(most, (size(r[k]) * rows[k] for k in order)) for r in inverse]
+    sizes = [reduce(most, (r[k] * rows[k] for k in order)) for r in inverse_sizes]
     return [_at_least(*solved, arithmetic) for solved in zip(values, sizes, strict=True)]
+
+
+def gains(
+    of: Solution, arithmetic: Arithmetic, ends: Callable[[Any], tuple[Any, Any]]
+) -> dict[str, Any]:
+    """Return how far an error of what each unknown is made of is magnified in it, at least 1.
+
+    ends : the smallest and the largest of sizes, where a bound for all samples is enough
+    """
+    found: dict[int, Any] = {}
+    most = arithmetic["most"]
+    scales = {place: ends(known.scale) for place, known in of.known.items()}
+    sizes = [None if s is None else ends(s)[1] for _, s in of.coefficients]
+    for block, inverse in zip(of.equations.blocks, of.inverses, strict=True):
+        right = [_gain(s, found, scales, sizes, most) for s in block.right]
+        for atom, row in zip(block.unknowns, inverse, strict=True):
+            each = (ends(x)[1] * r for x, r in zip(row, right, strict=True))
+            found[atom] = reduce(most, each, 1.0)
+    return {of.equations.names[atom]: gain for atom, gain in found.items()}
+
+
+def _gain(
+    parts: Sum,
+    found: Mapping[int, Any],
+    scales: Mapping[int, tuple[Any, Any]],
+    sizes: Sequence[Any],
+    most: Callable[[Any, Any], Any],
+) -> Any:
+    """Return the largest of what a sum magnifies its factors by, times what these have gained."""
+    gain: Any = 1.0
+    for part in parts:
+        for place, (atom, _) in enumerate(part.factors):
+            size = sizes[part.coefficient]
+            for other, times, left in _differentiated(part, place):
+                size = size if times == 1 else _times(size, float(abs(times)))
+                if left:
+                    size = _times(size, raised(scales[other][left > 0], left))
+            gain = most(gain, _times(size, found.get(atom, 1.0)))
+    return gain

@@ -84,11 +84,11 @@ def test_slopes_are_central_differences_of_the_reference_itself(name: str) -> No
         equations = equations_of(known, problem)
         with ctx.workprec(BITS):
             given = {c: arb(x) for c, x in ordinary(known).values.items()}
-            slopes = solution(equations, given, columns, BALLS)
+            slopes = solution(equations, given, columns, BALLS).unknowns()
             h = arb(2) ** -STEP_BITS
             for column in columns:
                 ahead, behind = (
-                    solution(equations, given | {column: given[column] + d}, (), BALLS)
+                    solution(equations, given | {column: given[column] + d}, (), BALLS).unknowns()
                     for d in (h, -h)
                 )
                 for row, one in slopes.items():

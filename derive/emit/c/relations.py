@@ -7,7 +7,7 @@ import re
 from collections.abc import Mapping, Sequence
 
 from derive.emit.equations.naming import Book, with_names
-from derive.emit.equations.section import section
+from derive.emit.equations.section import outline, section
 from derive.emit.notation import sympy_equation_text
 from derive.emit.page.glance import short_forms
 from derive.library.library import Library
@@ -32,7 +32,7 @@ def relations(library: Library, program: Program) -> list[str]:
 
     A derivative and a step have none: they are no equations of the lecture.
     """
-    if program.name not in library.problems:
+    if program.name not in library.problems or outline(library, program.name).is_long:
         return []
     one = with_names(section(library, program.name), Book())
     places = {

@@ -19,6 +19,9 @@ from derive.program.program import Quantity
 from derive.scene.said import potential_said
 from derive.scene.unit import Dimension
 
+LONG = 40
+"""Lines that a function takes as first written, beyond which none of its answers is shown closed:
+tidying and solving all of them to find that out takes longer than all else."""
 Standing = Literal["law", "balance", "solution", "definition"]
 
 
@@ -97,16 +100,37 @@ def recalled(part: Paragraph) -> Iterator[tuple[str, list[Symbol], str]]:
         yield name, named, others if count else ""
 
 
-def section(library: Library, base: str) -> Section:
-    """Return the equations of a function, its symbols without names yet; made once."""
-    place, kept = ("section", base), library.mechanism.told
+@dataclass(frozen=True)
+class Outline:
+    """A function's equations as they are first written, neither tidied nor solved.
+
+    found  : unknowns that are answers
+    called : names of all symbols that may stand in them
+    stands : answers that are known by another symbol
+    """
+
+    parts: tuple[Paragraph, ...]
+    answers: Mapping[Symbol, Expr]
+    found: frozenset[Symbol]
+    called: Mapping[Symbol, str]
+    stands: Mapping[Symbol, Expr]
+
+    @property
+    def is_long(self) -> bool:
+        """Tell whether no answer is expected to come down to a few lines."""
+        return sum(len(part.equations) for part in self.parts) > LONG
+
+
+def outline(library: Library, base: str) -> Outline:
+    """Return the equations of a function as they are first written; made once."""
+    place, kept = ("outline", base), library.mechanism.told
     if place not in kept:
-        kept[place] = _section(library, base)
-    found: Section = kept[place]
+        kept[place] = _outline(library, base)
+    found: Outline = kept[place]
     return found
 
 
-def _section(library: Library, base: str) -> Section:
+def _outline(library: Library, base: str) -> Outline:
     known = library.mechanism
     own, written = known.posed(base), written_equations(known, base)
     symbols, label = own.words.sheet.symbols, own.words.sheet.label
@@ -118,20 +142,39 @@ def _section(library: Library, base: str) -> Section:
     kinds: tuple[Standing, ...] = ("law", "balance", "law")
     every = [_paragraph(kind, *group, stands)
               for kind, group in zip(kinds, written.groups, strict=True)]  # fmt: skip
-    every.insert(2, Paragraph("solution", (), tuple(resolved(library, base).items())))
+    every.insert(2, Paragraph("solution", (), ()))
     if [*map(label, written.answers)] == ["energy"]:
         every = [*_energies(library, base)] or every
+    return Outline(tuple(every), written.answers, frozenset(written.found), called, stands)
+
+
+def section(library: Library, base: str) -> Section:
+    """Return the equations of a function, its symbols without names yet; made once."""
+    place, kept = ("section", base), library.mechanism.told
+    if place not in kept:
+        kept[place] = _section(library, base)
+    found: Section = kept[place]
+    return found
+
+
+def _section(library: Library, base: str) -> Section:
+    known, first = library.mechanism, outline(library, base)
+    own = known.posed(base)
+    symbols, label = own.words.sheet.symbols, own.words.sheet.label
     spoken = [*own.vocabulary.every(), *own.words.vocabulary.every()]
-    of_scene = {symbols[c] for q in spoken for c in q.components} | written.found.keys()
-    parts = tuple(_defined_once(tuple(_fitted(every, called)), {*called, *written.answers}))
+    of_scene = {symbols[c] for q in spoken for c in q.components} | first.found
+    every = [replace(part, equations=tuple(resolved(library, base).items()))
+             if part.kind == "solution" else part for part in first.parts]  # fmt: skip
+    parts = tuple(_defined_once(tuple(_fitted(every, first.called)),
+                                {*first.called, *first.answers}))  # fmt: skip
     return Section(
         base,
         known.whole(base).says,
         tuple(notes(known, base)),
         parts,
-        {label(s): stands.get(s, s) for s in written.answers},
+        {label(s): first.stands.get(s, s) for s in first.answers},
         {c: symbols[c] for q in own.words.vocabulary.given() for c in q.components},
-        {s: name for s, name in called.items() if s in of_scene},
+        {s: name for s, name in first.called.items() if s in of_scene},
         {s: name for name, s in symbols.items() if s not in of_scene},
         _units(symbols, spoken, parts),
         known.scene.marks,

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Mapping
+from dataclasses import dataclass, field
 from fractions import Fraction
 
 from sympy import Add, Expr, Mul, Pow, Rational, S, Symbol
@@ -17,36 +18,54 @@ Counted = tuple[tuple[str, int], ...]
 PARTS = re.compile(r"([^0-9]*)([0-9]+|$)")
 
 
+@dataclass(frozen=True)
+class _Written:
+    """How symbols are written, and what has been arranged: terms are sorted by how they read."""
+
+    names: Names
+    layouts: dict[Expr, Layout] = field(default_factory=dict)
+
+
 def symbolic_layout(expression: Expr, names: Names) -> Layout:
     """Return how ``expression`` is written; a symbol without a name keeps its own."""
+    return _layout(expression, _Written(names))
+
+
+def _layout(expression: Expr, by: _Written) -> Layout:
+    if expression not in by.layouts:
+        by.layouts[expression] = _arranged(expression, by)
+    return by.layouts[expression]
+
+
+def _arranged(expression: Expr, by: _Written) -> Layout:
     if isinstance(expression, Symbol):
-        return name(names.get(expression, expression.name), "scalar")
+        return name(by.names.get(expression, expression.name), "scalar")
     if isinstance(expression, Rational):
         return number(Fraction(expression.p, expression.q))
     if expression is S.Pi:
         return name("pi", "scalar")
     if isinstance(expression, Add):
-        return _sum(expression, names)
+        return _sum(expression, by)
     if isinstance(expression, Mul | Pow):
-        return _product(expression, names)
+        return _product(expression, by)
     if expression.func.__name__ in FUNCTIONS:
-        inside = symbolic_layout(expression.args[0], names)
+        inside = _layout(expression.args[0], by)
         return Layout("call", (inside,), expression.func.__name__)
     known = ", ".join(FUNCTIONS)
     raise NotationError(f"the notation reads sums, products, powers, {known}; not '{expression}'")
 
 
-def _sum(expression: Add, names: Names) -> Layout:
+def _sum(expression: Add, by: _Written) -> Layout:
     """Return the terms, short ones first, beginning with one that has no minus."""
-    terms = sorted(expression.args, key=lambda term: _term_key(term, names))
-    parts = [symbolic_layout(term, names) for term in terms]
+    terms = sorted(expression.args, key=lambda term: _term_key(term, by))
+    parts = [_layout(term, by) for term in terms]
     first = next((i for i, part in enumerate(parts) if part.kind != "negative"), 0)
     return added([parts[first], *parts[:first], *parts[first + 1 :]])
 
 
-def _term_key(term: Expr, names: Names) -> tuple[int, list[Counted], Counted]:
+def _term_key(term: Expr, by: _Written) -> tuple[int, list[Counted], Counted]:
     factors = [f for f in Mul.make_args(term) if not isinstance(f, Rational)]
-    text = plain(symbolic_layout(term, names))
+    text = plain(_layout(term, by))
     return sum(map(_degree, factors)), sorted(counted(_first(f)) for f in factors), counted(text)
 
 
@@ -72,16 +91,16 @@ def _first(factor: Expr) -> str:
     return min((symbol.name for symbol in factor.free_symbols), default="")
 
 
-def _product(expression: Expr, names: Names) -> Layout:
+def _product(expression: Expr, by: _Written) -> Layout:
     """Return numbers, then symbols, then functions; what has a negative exponent stands below."""
     coefficient, rest = expression.as_coeff_Mul()
     above: list[Layout] = []
     below: list[Layout] = []
-    for factor in sorted(Mul.make_args(rest), key=lambda f: _factor_key(f, names)):
+    for factor in sorted(Mul.make_args(rest), key=lambda f: _factor_key(f, by)):
         sign, base, exponent = _turned(factor)
         coefficient *= sign
         under = exponent.is_Rational and exponent < 0
-        power = _power(base, -exponent if under else exponent, names)
+        power = _power(base, -exponent if under else exponent, by)
         (below if under else above).append(power)
     value = Fraction(coefficient.p, coefficient.q)
     if not below:
@@ -92,10 +111,10 @@ def _product(expression: Expr, names: Names) -> Layout:
     return negative(whole) if value < 0 else whole
 
 
-def _factor_key(factor: Expr, names: Names) -> tuple[bool, Counted, Counted]:
+def _factor_key(factor: Expr, by: _Written) -> tuple[bool, Counted, Counted]:
     base, exponent = factor.as_base_exp()
     size = abs(exponent) if exponent.is_Rational else exponent
-    text = plain(_power(base, size, names))
+    text = plain(_power(base, size, by))
     return base.func.__name__ in FUNCTIONS, counted(_first(factor)), counted(text)
 
 
@@ -108,12 +127,12 @@ def _turned(factor: Expr) -> tuple[int, Expr, Expr]:
     return 1, base, exponent
 
 
-def _power(base: Expr, exponent: Expr, names: Names) -> Layout:
-    inside = symbolic_layout(base, names)
+def _power(base: Expr, exponent: Expr, by: _Written) -> Layout:
+    inside = _layout(base, by)
     if exponent == 1:
         return inside
     if exponent == S.Half:
         return Layout("call", (inside,), "sqrt")
     if not exponent.is_Rational:
         raise NotationError(f"the notation reads powers of a number, not '{base}**{exponent}'")
-    return Layout("power", (operand(inside), symbolic_layout(exponent, names)))
+    return Layout("power", (operand(inside), _layout(exponent, by)))

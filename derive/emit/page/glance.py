@@ -1,12 +1,12 @@
 """What a function answers, at a glance: the closed forms of a terminal, where these are short."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 
 from sympy import Symbol
 
 from derive.emit.equations.fitted import TwoSides
 from derive.emit.equations.naming import Book, with_names
-from derive.emit.equations.section import Section, section
+from derive.emit.equations.section import Outline, Paragraph, Section, outline, section
 from derive.emit.notation import equation_mathml, sympy_equation_mathml
 from derive.emit.page.equation import is_short
 from derive.library.library import Library
@@ -20,18 +20,37 @@ def at_a_glance(library: Library, base: str) -> list[str]:
 
     An answer that is given or zero says nothing; what it is made of stands before it.
     """
+    first = outline(library, base)
+    if first.is_long:
+        return [*_sums(_answers(first), first.called), *_laws(first.parts)]
     one = with_names(section(library, base), Book())
     shown = short_forms(one, MOST)
     if shown:
         return [sympy_equation_mathml(left, right, one.names) for left, right in shown]
     defined = _defined(one)
     ends = [defined[s] for s in one.answers.values() if s in defined]
-    sums = [e for e in ends if e[1].is_Add and all(term.is_Symbol for term in e[1].args)]
-    parts = sorted(one.parts, key=lambda part: part.kind != "balance")
+    return [*_sums(ends, one.names), *_laws(one.parts)]
+
+
+def _answers(of: Outline) -> list[TwoSides]:
+    """Return the lines of answers as they are first written."""
+    return [e for part in of.parts for e in part.equations if e[0] in of.answers]
+
+
+def _sums(ends: Iterable[TwoSides], names: Mapping[Symbol, str]) -> list[str]:
+    """Return the lines of answers that are sums of others."""
+    every = (e for e in ends if e[1].is_Add and all(term.is_Symbol for term in e[1].args))
+    return [sympy_equation_mathml(*e, names) for e in every]
+
+
+def _laws(parts: Sequence[Paragraph]) -> list[str]:
+    """Return the laws that equations come from: of balances one says all."""
+    parts = [part for part in parts if part.equations]
+    parts = sorted(parts, key=lambda part: part.kind != "balance")
     steps = [step for part in parts for step in part.steps]
     one_says_all = bool(parts) and parts[0].kind == "balance"
     laws = [s for n, s in enumerate(steps) if s not in steps[:n]][: 1 if one_says_all else MOST]
-    return [sympy_equation_mathml(*e, one.names) for e in sums] + [*map(equation_mathml, laws)]
+    return [*map(equation_mathml, laws)]
 
 
 def short_forms(one: Section, most: int) -> list[TwoSides]:
