@@ -8,6 +8,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable
 from fractions import Fraction
 from functools import partial, reduce
+from math import inf
 
 from derive.lower.graph import ONE, UNIT, Graph, Value
 
@@ -17,13 +18,18 @@ Visit = Callable[[int], Expanded]
 Family = str | int
 
 
+class TooManyTermsError(ValueError):
+    """A value, or a part of it, that has more terms multiplied out than are asked for."""
+
+
 def multiplied_out(
-    graph: Graph, values: Iterable[Value], kept: frozenset[Family]
+    graph: Graph, values: Iterable[Value], kept: frozenset[Family], most: float = inf
 ) -> list[Expanded]:
     """Return for each value the coefficient, made of parameters, of every monomial in variables.
 
     Calls, cuts and denominators that vary count as variables of their own, and so do the lets
     whose family is ``kept``; what these stand for is multiplied out in itself.
+    Raises TooManyTermsError where a part has more than ``most`` terms.
     """
     memory: dict[int, Expanded] = {}
 
@@ -33,6 +39,8 @@ def multiplied_out(
                 memory[node] = _kept(graph, node, visit)
             else:
                 memory[node] = _terms(graph, node, visit)
+            if len(memory[node]) > most:
+                raise TooManyTermsError
         return memory[node]
 
     return [_scaled(graph, visit(node), coefficient) for coefficient, node in values]

@@ -18,6 +18,7 @@ from derive.lower.derivative import slopes_by
 from derive.lower.expand import (
     Expanded,
     Family,
+    TooManyTermsError,
     collected_by_factors,
     degree,
     factored,
@@ -31,6 +32,7 @@ from derive.program.arithmetic import FLOPS
 from derive.program.program import Op
 
 MANY_TERMS = 60  # beyond this, multiplying out has never been the cheaper form
+MOST_ON_THE_WAY = 10 * MANY_TERMS  # of a part: so many do not cancel to a few
 MANY_CHOICES = 30
 FINALISTS = 4  # of values and of Jacobians, each judged alone, that are then judged together
 WAYS: tuple[Callable[[Graph, Expanded], Value], ...] = (factored, collected_by_factors)
@@ -83,7 +85,10 @@ def value_forms(graph: Graph, group: Dependents) -> list[tuple[Value, ...]]:
 
 
 def _expanded(graph: Graph, group: Dependents, kept: frozenset[Family]) -> list[Expanded] | None:
-    expanded = multiplied_out(graph, group.values, kept)
+    try:
+        expanded = multiplied_out(graph, group.values, kept, MOST_ON_THE_WAY)
+    except TooManyTermsError:
+        return None
     return None if any(len(t) > MANY_TERMS for t in expanded) else expanded
 
 

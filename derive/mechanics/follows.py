@@ -110,6 +110,7 @@ def _best(
     able: Sequence[int], count: int, pivots: Callable[[Sequence[int]], Doubles]
 ) -> tuple[int, ...]:
     """Return the choice whose smallest pivot is largest; of very many, one by one."""
+
     def least(own: Sequence[int]) -> float:
         return round(float(np.min(pivots(own))), SAME)
 

@@ -12,6 +12,9 @@ from derive.mechanics.probe import NOTHING, at_rest, random_probe, vanishes
 from derive.scene import SceneError
 from derive.scene.machine import INERTIAL, Force, Gradient, Load, Spring, Weight
 
+FEW = 4
+"""Frames of a chain up which places are carried."""
+
 
 @dataclass(frozen=True)
 class Wrench:
@@ -143,8 +146,7 @@ def potential_energy(frames: Frames) -> Expr:
                 g = frames.carried(frames.words.column(load.gravity), load.along, INERTIAL)
                 _keeps(frames, load.name, "gravity", list(g))
                 start = _level(frames, load.name, g, centre(frames, body)[0])
-                at = frames.apart((start, ZERO), centre(frames, body), INERTIAL)
-                total -= mass(frames, body) * (g.T * at)[0]
+                total -= mass(frames, body) * _along(frames, g, start, centre(frames, body))
         elif isinstance(load, Spring):
             d, _ = stretched(frames, load)
             k, rest = (frames.words.expression(f) for f in (load.stiffness, load.length))
@@ -153,6 +155,20 @@ def potential_energy(frames: Frames) -> Expr:
             size = sqrt(square) if rest != 0 else Integer(0)
             total += Rational(1, 2) * k * (square - 2 * rest * size + rest**2)
     return total
+
+
+def _along(frames: Frames, g: Matrix, start: str, end: Located) -> Expr:
+    """Return how far a point is from a frame's origin along an inertial vector, times its length.
+
+    Up a long chain the point is not carried: that doubles its terms at every turn. The vector is
+    carried down instead, which has a name in every frame.
+    """
+    above = frames.chain(end[0])[: frames.chain(end[0]).index(start)]
+    if len(above) <= FEW:
+        return (g.T * frames.apart((start, ZERO), end, INERTIAL))[0]
+    origins = ((frames.each[n].parent, frames.words.column(frames.each[n].origin)) for n in above)
+    each = ((frames.carried(g, INERTIAL, name).T * at)[0] for name, at in (end, *origins))
+    return sum(each, Integer(0))
 
 
 def _keeps(frames: Frames, load: str, what: str, values: list[Expr]) -> None:

@@ -242,7 +242,7 @@ def _matrix(
 
 
 def _signed(sign: int, right: Solved) -> tuple[Matrix, list[Solved]]:
-    """Return the inverse of 1 or -1 without its sign, and what an equation says that has it for a matrix."""
+    """Return the size of a matrix of 1 or -1 inverted, and the unknown that it stands before."""
     if sign > 0:
         return ((1.0,),), [right]
     slopes = {c: (-value, scale) for c, (value, scale) in right.slopes.items()}

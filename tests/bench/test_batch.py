@@ -17,9 +17,7 @@ def test_a_function_over_members_is_timed_and_compared(tmp_path: Path) -> None:
     assert 0 < found.of_limit < 100
 
 
-def test_a_bit_that_differs_is_no_figure(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_bit_that_differs_is_no_figure(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     right = batch.members_files
 
     def wrong(*given: object) -> dict[str, str]:

@@ -98,4 +98,3 @@ def test_wrong_wheels_and_slides_are_no_way(name: str, monkeypatch: pytest.Monke
         monkeypatch.setattr(ways, "links", lambda *_, wrong=wrong: wrong)
         taken[what] = len(list(by_links(own, "accelerations")))
     assert taken == dict.fromkeys(MUTANTS[name], 0)
-

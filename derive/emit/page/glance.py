@@ -68,9 +68,7 @@ def _defined(one: Section) -> dict[Symbol, TwoSides]:
     return {left: (left, right) for left, right in one.equations if one.assigns((left, right))}
 
 
-def _chain(
-    symbol: Symbol, defined: Mapping[Symbol, TwoSides], seen: set[Symbol]
-) -> list[TwoSides]:
+def _chain(symbol: Symbol, defined: Mapping[Symbol, TwoSides], seen: set[Symbol]) -> list[TwoSides]:
     """Return the equations that a symbol stands on, its own last, each once.
 
     seen : symbols whose equations are not asked for again; one that is zero or given has none
