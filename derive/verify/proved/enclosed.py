@@ -99,10 +99,13 @@ def _blame(found: Enclosed, index: int, step: Operation) -> None:
     if step.origin == "pairs":
         largest /= 2.0 ** (found.traits.precision.bits // 2 + 2)
     own = found.own[index]
-    lost = ~(greatest(found.ranges[index]) <= largest) | ~(found.errors[index] < np.inf)
+    held = greatest(found.ranges[index]) <= largest
+    if step.origin == "pairs":
+        held &= found.errors[index] < np.inf
     if own is not None:
-        lost |= ~(own < np.inf)
-    found.blamed = np.where((found.blamed < 0) & lost, index, found.blamed)
+        held &= own < np.inf
+    if not held.all():
+        found.blamed = np.where((found.blamed < 0) & ~held, index, found.blamed)
 
 
 def given(of: Traits, step: Operation, boxes: Mapping[str, Interval], count: int) -> At:

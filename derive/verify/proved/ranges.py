@@ -20,14 +20,27 @@ NEAR = 1e-6
 """Of a turn: ends that are nearer to a crest of a sine count as beyond it; of a number next to a
 power of two, which the high part of a pair may be above."""
 SINE_SLACK = 2.0**-50
+EXPONENT = 0x7FF0_0000_0000_0000
+"""Where the exponent of a double stands: what is left of its bits is a power of two."""
 FARTHEST = float(FITTED[53].largest)
 
 
 def outward(low: Column, high: Column) -> Interval:
     """Return a range that holds what ends were rounded from, all numbers for ends that are none."""
-    low = low - (np.abs(low) * SLACK + LEAST)
-    high = high + (np.abs(high) * SLACK + LEAST)
-    return np.where(np.isnan(low), -np.inf, low), np.where(np.isnan(high), np.inf, high)
+    return _numbers(low - _slack(low, LEAST), high + _slack(high, LEAST))
+
+
+def _slack(x: Column, least: float) -> Column:
+    """Return what an end is moved by."""
+    by = np.abs(x)
+    by *= SLACK
+    by += least
+    return by
+
+
+def _numbers(low: Column, high: Column) -> Interval:
+    """Return a range, all numbers for ends that are none."""
+    return np.fmax(low, -np.inf), np.fmin(high, np.inf)
 
 
 def greatest(a: Interval) -> Column:
@@ -43,8 +56,7 @@ def hull(a: Interval, b: Interval) -> Interval:
 def sum_of(a: Interval, b: Interval) -> Interval:
     """Return a + b: a sum that is small is exact."""
     low, high = a[0] + b[0], a[1] + b[1]
-    low, high = low - np.abs(low) * SLACK, high + np.abs(high) * SLACK
-    return np.where(np.isnan(low), -np.inf, low), np.where(np.isnan(high), np.inf, high)
+    return _numbers(low - _slack(low, 0.0), high + _slack(high, 0.0))
 
 
 def negated(a: Interval) -> Interval:
@@ -121,10 +133,9 @@ def one_power(a: Interval) -> Interval:
 
 def half_unit(most: Column, bits: int, least: float) -> Column:
     """Return how far rounding to floats of so many bits may move a number up to ``most``."""
-    mantissa, exponent = np.frexp(most)
-    found = np.ldexp(1.0, exponent - 1 - bits - (mantissa == 0.5))
-    found = np.where(most == 0, 0.0, np.maximum(found, least))
-    return np.where(np.isfinite(most), found, np.inf)
+    below = (np.asarray(most, np.float64).view(np.int64) - 1) & EXPONENT  # of the float before it
+    found = np.maximum(below.view(np.float64) * 2.0**-bits, least)
+    return np.where(most == 0, 0.0, np.where(most < np.inf, found, np.inf))
 
 
 def column(x: Any, count: int) -> Interval:

@@ -31,8 +31,7 @@ def shifts(of: Enclosed) -> Column:
             slope, step = slopes.pop(index), trace.steps[index]
             own_ = of.own[index]
             if own_ is not None:
-                part = greatest(slope) * own_
-                total += np.where((own_ == 0) | ((slope[0] == 0) & (slope[1] == 0)), 0.0, part)
+                total += np.fmax(greatest(slope) * own_, 0.0)  # nothing times anything is nothing
             if step.origin == "working":
                 _passed_on(of, index, step, slope, slopes)
     total = np.where(np.isnan(total), np.inf, total * UPWARDS)
