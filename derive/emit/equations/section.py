@@ -19,7 +19,7 @@ from derive.program.program import Quantity
 from derive.scene.said import potential_said
 from derive.scene.unit import Dimension
 
-LONG = 40
+LONG = 24
 """Lines that a function takes as first written, beyond which none of its answers is shown closed:
 tidying and solving all of them to find that out takes longer than all else."""
 Standing = Literal["law", "balance", "solution", "definition"]

@@ -7,12 +7,14 @@ cosines of sums; what takes the fewest operations is kept. Long sums are not mul
 from collections import Counter
 from collections.abc import Iterator
 from functools import lru_cache
+from itertools import combinations
 
 from sympy import Add, Expr, Mul, Pow, cos, default_sort_key, expand, factor_terms, sin
 from sympy.simplify.fu import TR6, TR10i
 
 from derive.lecture.turning import reduced
 
+Powers = tuple[Expr, Expr]  # a factor's base, and its exponent
 KEPT = 10_000
 """Parts of equations of which it is remembered what became of them."""
 LONGEST = 45
@@ -53,10 +55,37 @@ def _forms(value: Expr) -> Iterator[Expr]:
         return
     whole = expand(value)
     every = [value, whole]
-    if value.has(sin, cos):
-        every += [TR10i(whole), reduced(value), expand(TR6(whole))]
+    if any(map(_adds_angles, whole.atoms(Add))):
+        every.append(TR10i(whole))
+    squared = {e.base.func for e in whole.atoms(Pow) if e.exp.is_Integer and e.exp > 1}
+    if sin in squared:
+        every.append(reduced(whole))
+    if cos in squared:
+        every.append(expand(TR6(whole)))
     for one in dict.fromkeys(every):
         yield from (one, _gathered(one))
+
+
+def _adds_angles(value: Expr) -> bool:
+    """Tell whether two terms of a sum differ by sines and cosines of the same angles alone.
+
+    Looking for sums of angles takes long where there are none.
+    """
+    alike: dict[frozenset[Powers], list[dict[Expr, Expr]]] = {}
+    for term in value.args:
+        powers = [f.as_base_exp() for f in Mul.make_args(term) if not f.is_number]
+        waves = {base: power for base, power in powers if isinstance(base, (sin, cos))}
+        alike.setdefault(frozenset(p for p in powers if p[0] not in waves), []).append(waves)
+    return any(_meet(a, b) for each in alike.values() for a, b in combinations(each, 2))
+
+
+def _meet(first: dict[Expr, Expr], second: dict[Expr, Expr]) -> bool:
+    """Tell whether what two products of sines and cosines do not share is of the same angles."""
+    left = [
+        {f.args[0] for f, power in own.items() if power != other.get(f)}
+        for own, other in ((first, second), (second, first))
+    ]
+    return bool(left[0]) and left[0] == left[1]
 
 
 def _gathered(value: Expr) -> Expr:
