@@ -180,15 +180,14 @@ class Graph:
     def within(self, values: Iterable[Value]) -> list[int]:
         """Return the nodes that ``values`` are made of, parts before what is made of them."""
         found: dict[int, None] = {}
-
-        def visit(node: int) -> None:
-            if node not in found:
-                for part in self.below(node):
-                    visit(part)
-                found[node] = None
-
-        for _, node in values:
-            visit(node)
+        for _, top in values:
+            waiting = [top]
+            while waiting:
+                parts = [] if waiting[-1] in found else self.below(waiting[-1])
+                if missing := [n for n in parts if n not in found]:
+                    waiting += reversed(missing)
+                else:
+                    found[waiting.pop()] = None
         return list(found)
 
     def leaf_names(self) -> set[str]:

@@ -61,23 +61,29 @@ class Constants:
 def exact_number(graph: Graph, value: Value) -> Fraction | None:
     """Return what a value without parameters is, None if it has some or is irrational."""
     coefficient, node = value
+    known: dict[int, Fraction] = {}
+    for n in graph.within([value]):
+        made = _exact_node(graph, n, known)
+        if made is None:
+            return None
+        known[n] = made
+    return coefficient * known[node]
+
+
+def _exact_node(graph: Graph, node: int, known: Mapping[int, Fraction]) -> Fraction | None:
+    """Return what a node is, by what it is made of."""
     kind, *rest = graph.nodes[node]
     if kind == "one":
-        return coefficient
-    parts = {n: exact_number(graph, (Fraction(1), n)) for n in graph.below(node)}
-    known = {n: part for n, part in parts.items() if part is not None}
-    if kind == "input" or len(known) < len(parts):
-        return None
-    made: Fraction | None = None
+        return Fraction(1)
     if kind in ("let", "cut"):
-        made = rest[0][0] * known[rest[0][1]]
-    elif kind == "sum":
-        made = sum((c * known[n] for c, n in rest[0]), Fraction(0))
-    elif kind == "product":
-        made = prod((known[n] ** p for n, p in rest[0]), start=Fraction(1))
-    elif rest[0] in EXACT:
-        made = EXACT[rest[0]](*(c * known[n] for c, n in rest[1]))
-    return None if made is None else coefficient * made
+        return rest[0][0] * known[rest[0][1]]
+    if kind == "sum":
+        return sum((c * known[n] for c, n in rest[0]), Fraction(0))
+    if kind == "product":
+        return prod((known[n] ** p for n, p in rest[0]), start=Fraction(1))
+    if kind == "call" and rest[0] in EXACT:
+        return EXACT[rest[0]](*(c * known[n] for c, n in rest[1]))
+    return None
 
 
 @dataclass(frozen=True)

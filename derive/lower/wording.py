@@ -85,11 +85,19 @@ def meaning(graph: Graph, value: Value) -> str:
     inverse = INVERSE.fullmatch(graph.names.get(value[1], "")) if value[0] == 1 else None
     if inverse:
         return f"entry {inverse[1]} of the inverse of the matrix that multiplies the unknowns"
-    text = formula(graph, value)
-    if len(text) <= LONGEST:
+    if _names_in(graph, value) <= LONGEST and len(text := formula(graph, value)) <= LONGEST:
         return text
     inputs = [graph.nodes[n][1] for n in graph.within([value]) if graph.nodes[n][0] == "input"]
     return f"a constant made of {', '.join(map(str, inputs))}"
+
+
+def _names_in(graph: Graph, value: Value) -> int:
+    """Return how many names and numbers the formula of a value is made of, which it may repeat."""
+    found: dict[int, int] = {}
+    for node in graph.within([value]):
+        inverse = INVERSE.fullmatch(graph.names.get(node, ""))
+        found[node] = 1 if inverse else max(sum(found[n] for n in graph.below(node)), 1)
+    return found[value[1]]
 
 
 def _node_text(graph: Graph, node: int) -> str:
