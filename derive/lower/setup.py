@@ -75,15 +75,16 @@ def _exact_node(graph: Graph, node: int, known: Mapping[int, Fraction]) -> Fract
     kind, *rest = graph.nodes[node]
     if kind == "one":
         return Fraction(1)
+    made: Fraction | None = None
     if kind in ("let", "cut"):
-        return rest[0][0] * known[rest[0][1]]
-    if kind == "sum":
-        return sum((c * known[n] for c, n in rest[0]), Fraction(0))
-    if kind == "product":
-        return prod((known[n] ** p for n, p in rest[0]), start=Fraction(1))
-    if kind == "call" and rest[0] in EXACT:
-        return EXACT[rest[0]](*(c * known[n] for c, n in rest[1]))
-    return None
+        made = rest[0][0] * known[rest[0][1]]
+    elif kind == "sum":
+        made = sum((c * known[n] for c, n in rest[0]), Fraction(0))
+    elif kind == "product":
+        made = prod((known[n] ** p for n, p in rest[0]), start=Fraction(1))
+    elif kind == "call" and rest[0] in EXACT:
+        made = EXACT[rest[0]](*(c * known[n] for c, n in rest[1]))
+    return made
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,8 @@ from sympy import Symbol
 from derive.mechanics.box import Box, ranges
 from derive.mechanics.constraints import Tie, curved, ties
 from derive.mechanics.frames import Frames
-from derive.mechanics.onto import TELLING, Onto, onto
+from derive.mechanics.independence import independent_conditions
+from derive.mechanics.onto import Onto, onto
 from derive.scene import SceneError
 from derive.scene.escape import at_place
 
@@ -29,6 +30,7 @@ class Bindings:
 
     every : all of them in the order in which the scene has them
     told : for each unknown that is taken as zero, the condition that it would enforce
+    off   : of those that are dropped, by what they do not hold where others do, as a part of ranges
     """
 
     kept: tuple[Tie, ...] = ()
@@ -36,6 +38,7 @@ class Bindings:
     onto: Onto | None = None
     told: Mapping[Symbol, str] = field(default_factory=dict)
     every: tuple[Tie, ...] = ()
+    off: Mapping[str, float] = field(default_factory=dict)
 
     @cached_property
     def curved(self) -> bool:
@@ -51,6 +54,9 @@ class Bindings:
         for c in self.dropped:
             force = "" if c.factor is None or sheet is None else f": '{sheet.label(c.factor)}' is 0"
             says = "says nothing that the others do not, and is left out"
+            if c.name in self.off:
+                off = f"by {self.off[c.name]:.2g} of a range, as rounded numbers are"
+                says = f"is off where the others hold {off}, and is left out"
             found.append(f"constraint '{c.name}' {says}{force}")
         return tuple(found)
 
@@ -95,11 +101,12 @@ def _bindings(frames: Frames) -> Bindings:
     every = ties(frames)
     brings = onto(frames, every)
     states = _states(frames, brings, ranges(frames.words))
-    slopes = [brings.slopes(state) for state in states]
-    kept = _independent(slopes)
-    dropped = [c for k, c in enumerate(every) if k not in kept]
+    found = independent_conditions(brings, states)
+    dropped = [c for k, c in enumerate(every) if k not in found.rows]
     told = {c.factor: c.name for c in dropped if c.factor is not None}
-    return Bindings(tuple(every[k] for k in kept), tuple(dropped), brings, told, every)
+    kept = tuple(every[k] for k in found.rows)
+    off = {every[k].name: off for k, off in found.off.items()}
+    return Bindings(kept, tuple(dropped), brings, told, every, off)
 
 
 def _states(frames: Frames, brings: Onto, box: Box) -> list[np.ndarray]:
@@ -132,14 +139,3 @@ def _require_slopes(brings: Onto, flat: np.ndarray) -> None:
     if names:
         rule = "changes with nothing where it is 0, as a square does, so nothing enforces it"
         raise SceneError(f"constraint '{names[0]}' {rule}; say what is 0 by itself")
-
-
-def _independent(each: list[np.ndarray]) -> list[int]:
-    """Return the places of the first rows that are independent at every state."""
-    kept: list[int] = []
-    for k in range(len(each[0])):
-        tried = [*kept, k]
-        if all(np.linalg.svd(s[tried], compute_uv=False)[-1] > TELLING for s in each
-               if len(tried) <= s.shape[1]) and len(tried) <= each[0].shape[1]:  # fmt: skip
-            kept.append(k)
-    return kept

@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from sympy import Expr, Symbol, lambdify
+from sympy import Expr, Integer, Symbol, lambdify
 
-from derive.mechanics.constraints import Partials, Tie
+from derive.mechanics.constraints import Tie
 from derive.mechanics.frames import Frames
 from derive.scene import Input
 
@@ -21,6 +21,7 @@ ROUNDS = 60
 CLOSE = 1e-11  # of a condition beside the size of its slopes: what floats leave of it
 FULFILLED = 1e-6  # of a range: what rates may be off by
 TELLING = 1e-7  # a singular value below this part of the largest is none
+CUT, WELL = 1e-12, 1e-3  # the same where places are sought; a part of what is close enough
 FLAT = 1e-3  # of what it is elsewhere: a condition that changes with rates by less is lost there
 
 Doubles = NDArray[Any]
@@ -46,54 +47,53 @@ class Onto:
 
     def brought(self, points: Doubles) -> tuple[Doubles, Doubles]:
         """Return points (count, components) that fulfil the conditions, and which of them do."""
-        found = np.array(points, float)
-        fits = np.ones(len(found), bool)
-        for n in range(len(found)):
-            found[n], fits[n] = self._one(found[n])
-        return found, fits
+        found, fits = np.array(points, float), np.ones(len(points), bool)
+        with np.errstate(all="ignore"):  # what is no number fits nothing
+            if self.of_places:
+                fits = self._with_places(found)
+            return found, self._with_rates(found, fits)
 
-    def _one(self, point: Doubles) -> tuple[Doubles, bool]:
-        here, columns, size = point, [*self.places], np.array([*self.places.values()])
-        if self._of_places:
-            for _ in range(ROUNDS):
-                value, slopes = self._placed(here)
-                scaled = slopes * size
-                weight = np.linalg.norm(scaled, axis=1)
-                weight = np.where(weight > 0, weight, 1.0)
-                gap, own = value / weight, scaled / weight[:, None]
-                if not np.all(np.isfinite(gap)):
-                    return here, False
-                if np.max(np.abs(gap)) < CLOSE * 1e-3:
-                    break
-                # damped by the square of what is left, which redundant conditions need
-                damped = own.T @ own + min(1.0, float(gap @ gap)) * np.eye(len(columns))
-                step = np.linalg.lstsq(damped, own.T @ gap, rcond=1e-15)[0]
-                longest = float(np.max(np.abs(step)))
-                here = here.copy()
-                here[columns] -= size * step * min(1.0, 0.5 / longest if longest else 1.0)
-            if np.max(np.abs(gap)) > CLOSE:
-                return here, False
-        return self._driven(here)
-
-    def _driven(self, here: Doubles) -> tuple[Doubles, bool]:
-        """Return a point with its rates moved, at once where conditions are linear in them."""
-        columns, size = [*self.rates], np.array([*self.rates.values()])
-        here = here.copy()
+    def _with_places(self, points: Doubles) -> Doubles:
+        """Move places of points, and return which fulfil the conditions then."""
+        columns, size = [*self.places], np.array([*self.places.values()])
+        fits, left = np.zeros(len(points), bool), np.arange(len(points))
         for _ in range(ROUNDS):
-            value, slopes = self._moving(here)
-            scaled = slopes * size
-            weight = np.linalg.norm(scaled, axis=1)
-            weight = np.where(weight > 0, weight, 1.0)
-            own, gap = scaled / weight[:, None], value / weight
-            if not np.all(np.isfinite(gap)):
-                return here, False
-            step = np.linalg.lstsq(own, gap, rcond=TELLING)[0]
-            here[columns] -= size * step
-            far = np.max(np.abs(step), initial=0.0)
-            if far < CLOSE:
+            value, slopes = self._placed(points[left])
+            own, gap = _of_size_one(slopes * size, value)
+            known = _finite(own, gap)
+            fits[left[~known]] = False
+            left, own, gap = left[known], own[known], gap[known]
+            off = np.max(np.abs(gap), axis=1, initial=0.0)
+            fits[left] = off < CLOSE
+            going = off >= CLOSE * WELL
+            left, own, gap = left[going], own[going], gap[going]
+            if not len(left):
                 break
-        left = np.max(np.abs(own @ step - gap), initial=0.0)
-        return here, bool(max(left, far) < FULFILLED)
+            step = _least(own, gap, CUT, np.sum(gap * gap, axis=1))
+            longest = np.max(np.abs(step), axis=1, keepdims=True)
+            step *= np.minimum(1.0, 0.5 / np.where(longest > 0, longest, 0.5))
+            points[np.ix_(left, columns)] -= size * step
+        return fits
+
+    def _with_rates(self, points: Doubles, among: Doubles) -> Doubles:
+        """Move rates of some points, at once where conditions are linear in them."""
+        columns, size = [*self.rates], np.array([*self.rates.values()])
+        fits, left = np.zeros(len(points), bool), np.flatnonzero(among)
+        for _ in range(ROUNDS):
+            if not len(left):
+                break
+            value, slopes = self._moving(points[left])
+            own, gap = _of_size_one(slopes * size, value)
+            known = _finite(own, gap)
+            fits[left[~known]] = False
+            left, own, gap = left[known], own[known], gap[known]
+            step = _least(own, gap, TELLING, np.zeros(len(left)))
+            points[np.ix_(left, columns)] -= size * step
+            far = np.max(np.abs(step), axis=1, initial=0.0)
+            rest = np.abs((own @ step[:, :, None])[:, :, 0] - gap)
+            fits[left] = np.maximum(np.max(rest, axis=1, initial=0.0), far) < FULFILLED
+            left = left[far >= CLOSE]
+        return fits
 
     def distances(self, points: Doubles) -> list[tuple[str, Doubles]]:
         """Return every condition and its rate at points (components, count), by names."""
@@ -107,12 +107,11 @@ class Onto:
     def worst(self, point: Doubles) -> tuple[str, float]:
         """Return the condition that is furthest off, in sizes of ranges, and what it is."""
         each = []
-        for slopes, sizes in ((self._placed if self._of_places else None, self.places),
-                              (self._moving, self.rates)):  # fmt: skip
-            if slopes is not None:
-                values, by = slopes(point)
-                weight = np.linalg.norm(by * np.array([*sizes.values()]), axis=1)
-                each += list(np.abs(values) / np.where(weight > 0, weight, 1.0))
+        for function, sizes in ((self._placed if self.of_places else None, self.places),
+                                (self._moving, self.rates)):  # fmt: skip
+            if function is not None:
+                values, by = function(point[None])
+                each += [*np.abs(_of_size_one(by * np.array([*sizes.values()]), values)[1][0])]
         name, value = self.distances(point)[int(np.argmax(each))]
         return name, float(value)
 
@@ -131,7 +130,7 @@ class Onto:
 
     def _scaled(self, point: Doubles) -> tuple[Doubles, Doubles]:
         """Return the slopes of first rates in sizes of ranges, and the length of each row."""
-        scaled = self._moving(point)[1] * np.array([*self.rates.values()])
+        scaled = self._moving(point[None])[1][0] * np.array([*self.rates.values()])
         return scaled, np.linalg.norm(scaled, axis=1)
 
     def lost(self, point: Doubles, usual: Doubles, rows: Sequence[int]) -> int | None:
@@ -140,22 +139,35 @@ class Onto:
         usual : a point at which all do
         """
         weight = self._scaled(usual)[1][[*rows], None]
-        own = self._scaled(point)[0][[*rows]] / np.where(weight > 0, weight, 1.0)
-        least = (np.linalg.svd(own[: k + 1], compute_uv=False)[-1] for k in range(len(rows)))
-        return next((row for row, x in zip(rows, least, strict=True) if x < FLAT), None)
+        here, there = (self._scaled(x)[0][[*rows]] / np.where(weight > 0, weight, 1.0)
+                       for x in (point, usual))  # fmt: skip
+        for k, row in enumerate(rows):
+            least, else_ = (np.linalg.svd(x[: k + 1], compute_uv=False)[-1] for x in (here, there))
+            if least < FLAT * else_:
+                return row
+        return None
 
     @cached_property
-    def _of_places(self) -> list[Expr]:
-        return [self.plain(c.place) for c in self.conditions if c.place is not None]
+    def of_places(self) -> list[tuple[Tie, Expr]]:
+        """Return the conditions of places, each with what is zero."""
+        return [(c, self.plain(c.place)) for c in self.conditions if c.place is not None]
+
+    @cached_property
+    def firsts(self) -> list[Expr]:
+        """Return what is zero of rates, of every condition."""
+        return [self.plain(c.first) for c in self.conditions]
+
+    def slopes_by_rates(self, first: Expr) -> list[Expr]:
+        """Return how what is zero of rates changes with each."""
+        own = (self.symbols[k] for k in self.rates)
+        return [first.diff(s) if s in first.free_symbols else Integer(0) for s in own]
 
     @cached_property
     def _functions(self) -> tuple[Any, Any]:
-        moved = [self.symbols[k] for k in self.places]
-        by, rates = Partials(self.frames), [self.symbols[k] for k in self.rates]
-        placed = [*self._of_places, *(e.diff(s) for e in self._of_places for s in moved)]
-        firsts = [c.first for c in self.conditions]
-        moving = [*firsts, *(by.by(e, s) for e in firsts for s in rates)]
-        flat = placed, [self.plain(e) for e in moving]
+        moved, own = [self.symbols[k] for k in self.places], [e for _, e in self.of_places]
+        placed = [*own, *(e.diff(s) if s in e.free_symbols else 0 for e in own for s in moved)]
+        moving = [*self.firsts, *(x for e in self.firsts for x in self.slopes_by_rates(e))]
+        flat = placed, moving
         first, second = (lambdify(self.symbols, e, modules="numpy", cse=True) for e in flat)
         return first, second
 
@@ -167,17 +179,45 @@ class Onto:
             known[symbol] = value.xreplace(known)
         return e.xreplace(known)
 
-    def _placed(self, point: Doubles) -> tuple[Doubles, Doubles]:
-        return _split(self._functions[0](*point), len(self.places))
+    def _placed(self, points: Doubles) -> tuple[Doubles, Doubles]:
+        return _split(self._functions[0](*points.T), points, len(self.places))
 
-    def _moving(self, point: Doubles) -> tuple[Doubles, Doubles]:
-        return _split(self._functions[1](*point), len(self.rates))
+    def _moving(self, points: Doubles) -> tuple[Doubles, Doubles]:
+        return _split(self._functions[1](*points.T), points, len(self.rates))
 
 
-def _split(values: Sequence[Any], columns: int) -> tuple[Doubles, Doubles]:
-    flat = np.array([float(v) for v in values])
-    count = len(flat) // (columns + 1)
-    return flat[:count], flat[count:].reshape(count, columns)
+def _split(values: Sequence[Any], points: Doubles, columns: int) -> tuple[Doubles, Doubles]:
+    """Return values (points, conditions), and slopes by each component that moves."""
+    flat = np.array([np.broadcast_to(np.asarray(v, float), len(points)) for v in values]).T
+    count = flat.shape[1] // (columns + 1)
+    return flat[:, :count], flat[:, count:].reshape(len(points), count, columns)
+
+
+def _finite(slopes: Doubles, values: Doubles) -> Doubles:
+    """Return at which points all is a number."""
+    found: Doubles = np.isfinite(slopes).all(axis=(1, 2)) & np.isfinite(values).all(axis=1)
+    return found
+
+
+def _of_size_one(scaled: Doubles, values: Doubles) -> tuple[Doubles, Doubles]:
+    """Return slopes whose rows are of size one, and values as these are scaled."""
+    weight = np.linalg.norm(scaled, axis=2)
+    weight = np.where(weight > 0, weight, 1.0)
+    return scaled / weight[:, :, None], values / weight
+
+
+def _least(slopes: Doubles, values: Doubles, cut: float, damping: Doubles) -> Doubles:
+    """Return for each point the least step that takes values off, damped, which redundancy needs.
+
+    damping : at most 1, beside squares of singular values
+    """
+    U, sizes, V = np.linalg.svd(slopes, full_matrices=False)
+    most = np.max(sizes, axis=1, keepdims=True, initial=0.0)
+    told = sizes > cut * most
+    by = sizes / np.where(told, sizes * sizes + np.minimum(1.0, damping)[:, None], 1.0)
+    along = (np.swapaxes(U, 1, 2) @ values[:, :, None])[:, :, 0] * np.where(told, by, 0.0)
+    found: Doubles = (np.swapaxes(V, 1, 2) @ along[:, :, None])[:, :, 0]
+    return found
 
 
 def onto(frames: Frames, every: tuple[Tie, ...]) -> Onto:

@@ -162,15 +162,20 @@ def independent(rows: Iterable[Mapping[int, Any]], wanted: int) -> list[int]:
     return independent_at_all([rows], wanted)
 
 
-def independent_at_all(matrices: Sequence[Iterable[Mapping[int, Any]]], wanted: int) -> list[int]:
-    """Return the places of the first rows that are independent in every one of several matrices."""
+def independent_at_all(
+    matrices: Sequence[Iterable[Mapping[int, Any]]], wanted: int, nothing: Any = NOTHING
+) -> list[int]:
+    """Return the places of the first rows that are independent in every one of several matrices.
+
+    nothing : what is left, at most, of a row that others make up
+    """
     kept: list[list[tuple[int, dict[int, Any]]]] = [[] for _ in matrices]
     places: list[int] = []
     with mp.workdps(DIGITS):
         for place, rows in enumerate(zip(*matrices, strict=True)):
             if len(places) == wanted:
                 break
-            left = [_reduced(row, own) for row, own in zip(rows, kept, strict=True)]
+            left = [_reduced(row, own, nothing) for row, own in zip(rows, kept, strict=True)]
             if all(left):
                 for own, row in zip(kept, left, strict=True):
                     own.append((max(row, key=lambda k, row=row: abs(row[k])), row))  # type: ignore[misc]
@@ -178,7 +183,9 @@ def independent_at_all(matrices: Sequence[Iterable[Mapping[int, Any]]], wanted: 
     return places
 
 
-def _reduced(row: Mapping[int, Any], kept: list[tuple[int, dict[int, Any]]]) -> dict[int, Any]:
+def _reduced(
+    row: Mapping[int, Any], kept: list[tuple[int, dict[int, Any]]], nothing: Any
+) -> dict[int, Any]:
     """Return what is left of a row when earlier ones are taken off it."""
     left = dict(row)
     size = max((abs(v) for v in row.values()), default=mpf(0))
@@ -188,5 +195,4 @@ def _reduced(row: Mapping[int, Any], kept: list[tuple[int, dict[int, Any]]]) -> 
             for k, v in other.items():
                 left[k] = left.get(k, mpf(0)) - factor * v
             del left[pivot]
-    nothing = NOTHING * size
-    return {k: v for k, v in left.items() if abs(v) > nothing}
+    return {k: v for k, v in left.items() if abs(v) > nothing * size}
