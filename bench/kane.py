@@ -4,11 +4,11 @@ Reactions are left out, as if they did no work. What moves in a known way is one
 whose rate is known. Symbols are those of the scene's working sheet.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from sympy import Expr, Function, Integer, Matrix, Symbol, eye
+from sympy import Expr, Function, Integer, Matrix, Symbol, eye, zeros
 from sympy.physics.mechanics import (
     KanesMethod,
     Point,
@@ -23,6 +23,8 @@ from derive.mechanics.bodies import centre, inertia_tensor, mass
 from derive.mechanics.frames import ZERO, Frames
 from derive.mechanics.loads import Wrench, wrenches
 from derive.mechanics.mechanism import Mechanism
+from derive.scene.constraint import Constraint
+from derive.scene.declaration import Triple
 from derive.scene.machine import INERTIAL, Frame
 
 T = dynamicsymbols._t  # noqa: SLF001 - SymPy has no other name for it
@@ -34,25 +36,46 @@ class NoPeerError(Exception):
 
 @dataclass(frozen=True)
 class KaneEquations:
-    """A mass matrix, a right side, and the unknowns that they are of."""
+    """A mass matrix, a right side, and the unknowns that they are of.
+
+    slopes : of the second rates of conditions by the unknowns    rests : what is left of those
+    """
 
     mass: Matrix
     right: Matrix
     unknowns: tuple[Symbol, ...]
+    slopes: Matrix
+    rests: Matrix
+
+    @property
+    def whole(self) -> tuple[Matrix, Matrix]:
+        """Return the matrix and the right side of unknowns and multipliers together."""
+        held = self.slopes.rows
+        matrix = Matrix([[self.mass, self.slopes.T], [self.slopes, zeros(held, held)]])
+        return matrix, Matrix([*self.right, *(-self.rests)])
+
+    def following(self, columns: Sequence[int]) -> tuple[Matrix, Matrix]:
+        """Return the same with some unknowns dependent, as KanesMethod takes multipliers out."""
+        others = [k for k in range(len(self.unknowns)) if k not in columns]
+        by = -self.slopes[:, columns].LUsolve(self.slopes[:, others])
+        mass, right = (m[others, :] + by.T * m[columns, :] for m in (self.mass, self.right))
+        return Matrix([mass, self.slopes]), Matrix([*right, *(-self.rests)])
 
 
 def equations(own: Mechanism) -> KaneEquations:
     """Return the equations of a scene by Kane's method.
 
-    Raises NoPeerError for a scene with constraints, and for one in which nothing is free.
+    Conditions that the others hold anyway are left out, as the scene's own equations do.
+    Raises NoPeerError for a scene in which nothing is free.
     """
     words = own.answers.frames.words
     given = {words.vocabulary.symbols[c] for q in words.vocabulary.given() for c in q.components}
     rates = {s: e for s, e in words.sheet.rates.items() if s in given}
     free = {s: e for s, e in rates.items() if e in words.sheet.unknowns}
-    if own.scene.constraints or not free:
-        raise NoPeerError("constraints" if own.scene.constraints else "nothing is free")
-    return _Model(own.answers.frames, rates, free).solved()
+    if not free:
+        raise NoPeerError("nothing is free")
+    kept = [own.held.every.index(tie) for tie in own.held.kept]
+    return _Model(own.answers.frames, rates, free).solved(kept)
 
 
 @dataclass
@@ -77,8 +100,8 @@ class _Model:
         base.set_vel(self.N, 0)
         self.axes[INERTIAL], self.origins[INERTIAL], self.driven[INERTIAL] = self.N, base, 0
 
-    def solved(self) -> KaneEquations:
-        """Return the equations of all bodies."""
+    def solved(self, kept: Sequence[int]) -> KaneEquations:
+        """Return the equations of all bodies, and of the conditions that are kept."""
         for name, frame in self.frames.each.items():
             if name != INERTIAL:
                 self.axes[name] = self._turned(frame)
@@ -95,8 +118,42 @@ class _Model:
         kane = KanesMethod(self.N, [*known], u, kd_eqs=rates)
         kane.kanes_equations([*bodies.values()], loads)
         back = {own: s for s, own in self.moving.items()}
-        mass, right = kane.mass_matrix.xreplace(back), kane.forcing.xreplace(back)
-        return KaneEquations(mass, right, tuple(self.free.values()))
+        seconds = [c for one in self.frames.machine.constraints for c in self._seconds(one)]
+        held = [seconds[k] for k in kept]
+        slopes = Matrix(len(held), len(u), lambda k, n: held[k].coeff(u[n].diff(T)))
+        still = dict.fromkeys((x.diff(T) for x in u), Integer(0))
+        parts = kane.mass_matrix, kane.forcing, slopes, Matrix([e.xreplace(still) for e in held])
+        mass, right, slopes, rests = (part.xreplace(back) for part in parts)
+        return KaneEquations(mass, right, tuple(self.free.values()), slopes, rests)
+
+    def _seconds(self, one: Constraint) -> Iterator[Expr]:
+        """Yield the second rates of what a constraint asks for, or rates of what is of rates."""
+        if one.meeting is None:
+            each = [self._dynamic(self.frames.words.expression(one.zero))]
+        else:
+            axes, meeting = self.axes[one.meeting.along], one.meeting
+            apart = self._particle(meeting.on, meeting.frame, meeting.at, of_rates=one.of_rates)
+            if meeting.against or not one.of_rates:
+                apart -= self._particle(meeting.against, meeting.to_frame, meeting.to,
+                                        of_rates=one.of_rates)  # fmt: skip
+            each = [apart.dot(getattr(axes, axis)) for axis in meeting.axes]
+        for value in each:
+            yield self._rate(value if one.of_rates else self._rate(value)).expand()
+
+    def _rate(self, value: Expr) -> Expr:
+        known = {self.moving[s].diff(T): self._dynamic(self.rates[s])
+                 for s in self.rates if s not in self.free}  # fmt: skip
+        return value.diff(T).xreplace(known)
+
+    def _particle(self, body: str, frame: str, at: Triple, *, of_rates: bool) -> Any:
+        """Return where a point is, or how fast the particle of a body is that is there."""
+        P = self.origins[frame].locatenew("P", self._vector(frame, self.frames.words.column(at)))
+        if not of_rates:
+            return P.pos_from(self.origins[INERTIAL])
+        name, place = centre(self.frames, body)
+        G = self.origins[name].locatenew("G", self._vector(name, place))
+        turning = self._spun(body).ang_vel_in(self.N)
+        return self._velocity(name, place) + turning.cross(P.pos_from(G))
 
     def _dynamic(self, e: Expr) -> Expr:
         """Return an expression of the working sheet in what varies with time."""

@@ -109,17 +109,23 @@ def ours(scene: Scene) -> Cost:
 
 
 def by_kane(scene: Scene) -> Cost:
-    """Return what KanesMethod, cse and L D L^T take.
+    """Return what KanesMethod, cse and L D L^T take, of a scene without constraints.
 
     Raises NoPeerError where the scene cannot be told to KanesMethod.
     """
     start = process_time()
     found = equations(mechanism(scene))
-    mass, n = found.mass, found.mass.rows
-    entries = [mass[i, j] for i in range(n) for j in range(i, n)]
-    A = Matrix(n, n, lambda i, j: _entry(mass, min(i, j), max(i, j)))
+    matrix, right = found.whole
+    n = matrix.rows
+    entries = [matrix[i, j] for i in range(n) for j in range(i, n)]
+    A = Matrix(n, n, lambda i, j: _entry(matrix, min(i, j), max(i, j)))
     solution = A.LDLsolve(Matrix([Symbol(f"b_{i}") for i in range(n)]))
-    stages = cse([*entries, *found.right]), cse([*solution])
+    return staged([*entries, *right], solution, start)
+
+
+def staged(entries: Sequence[Expr], solution: Iterable[Expr], start: float) -> Cost:
+    """Return what entries of equations take, and then their solution, each after ``cse``."""
+    stages = cse([*entries]), cse([*solution])
     divisions = sum(_divides(e) for shared, left in stages for e in (*dict(shared).values(), *left))
     return Cost(sum(counted(*stage) for stage in stages), divisions, process_time() - start)
 
@@ -138,9 +144,10 @@ def same(own: Mechanism, found: KaneEquations) -> bool:
     probe.define(problem.definitions)
     true, probe = answered(problem, probe), random_probe(own.words, 0)
     with mp.workdps(DIGITS):
-        matrix = [[probe.value(e) for e in found.mass.row(k)] for k in range(found.mass.rows)]
-        values = solved(matrix, [probe.value(e) for e in found.right])
-    by = dict(zip(found.unknowns, values, strict=True))
+        matrix, right = found.whole
+        rows = [[probe.value(e) for e in matrix.row(k)] for k in range(matrix.rows)]
+        values = solved(rows, [probe.value(e) for e in right])
+    by = dict(zip(found.unknowns, values, strict=False))  # multipliers are last
     each = zip((by[s] for s in problem.answers), true, strict=True)
     return all(abs(x - y) <= NOTHING * max(1, abs(x)) for x, y in each)
 

@@ -42,7 +42,7 @@ def contradiction(balances: Balances) -> str:
     telling = balances.telling if balances.held else balances.spanning
     if not all(_contradicted(telling, point) for point in range(PROBES)):
         return ""
-    if idle := _idle(balances):
+    if idle := idle_enforcer(balances):
         return idle
     rows = unbalanced(balances)
     if rows:
@@ -55,8 +55,11 @@ def contradiction(balances: Balances) -> str:
             "declare a load with an unknown more, or leave a motion free")  # fmt: skip
 
 
-def _idle(balances: Balances) -> str:
-    """Return a sentence on a load that is said to enforce a constraint and cannot."""
+def idle_enforcer(balances: Balances) -> str:
+    """Return a sentence on a load that is said to enforce a constraint and cannot, "" if none is.
+
+    Where another load has the power for it, the equations stand; the scene does not say them.
+    """
     machine, label = balances.frames.machine, balances.frames.sheet.label
     of = {u.name: u.load for u in machine.unknowns}
     powers = [row for row in balances.enforced if row.balance.kind == "virtual power"]

@@ -5,7 +5,7 @@ nothing could tell how it shares its part, is taken as zero. What cannot be fulf
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from random import Random
 
@@ -16,11 +16,13 @@ from derive.mechanics.box import Box, ranges
 from derive.mechanics.constraints import Tie, curved, ties
 from derive.mechanics.frames import Frames
 from derive.mechanics.independence import independent_conditions
-from derive.mechanics.onto import Onto, onto
+from derive.mechanics.onto import Doubles, Onto, onto
 from derive.scene import SceneError
 from derive.scene.escape import at_place
 
 STATES, TRIES = 3, 60
+ASIDE, FOLLOWED = 0.05, 1e-6
+"""Of a range; and of what a condition is off by there, where the others are fulfilled again."""
 SEED = "derive: states on constraints"
 
 
@@ -125,7 +127,7 @@ def _states(frames: Frames, brings: Onto, box: Box) -> list[np.ndarray]:
         elif fits[0]:
             best = box.outside(point[0], brings.places)
     if found:
-        _require_slopes(brings, np.all(flat, axis=0))
+        _require_slopes(brings, np.all(flat, axis=0), np.array(found))
         return found
     names = ", ".join(f"'{c.name}'" for c in frames.machine.constraints)
     rule = f"no state of the declared ranges was found that fulfils constraint {names}"
@@ -133,9 +135,22 @@ def _states(frames: Frames, brings: Onto, box: Box) -> list[np.ndarray]:
     raise SceneError(f"{rule}{more}{'' if best else ' each other?'}")
 
 
-def _require_slopes(brings: Onto, flat: np.ndarray) -> None:
-    """Refuse a condition that changes with nothing wherever it holds: no force enforces it."""
-    names = [c.name for c, is_flat in zip(brings.conditions, flat, strict=True) if is_flat]
-    if names:
-        rule = "changes with nothing where it is 0, as a square does, so nothing enforces it"
-        raise SceneError(f"constraint '{names[0]}' {rule}; say what is 0 by itself")
+def _require_slopes(brings: Onto, flat: Doubles, states: Doubles) -> None:
+    """Refuse a condition that changes with nothing wherever it holds: no force enforces it.
+
+    It may, where the others hold it anyway.
+    """
+    others = tuple(c for c, is_flat in zip(brings.conditions, flat, strict=True) if not is_flat)
+    if len(others) == len(flat):
+        return
+    dice, near, fits = Random(SEED), states.copy(), np.ones(len(states), bool)  # noqa: S311
+    for k, size in {**brings.places, **brings.rates}.items():
+        near[:, k] += [ASIDE * size * dice.uniform(-1, 1) for _ in near]
+    off = np.abs(brings.values(near))
+    if others:
+        near, fits = replace(brings, conditions=others).brought(near)
+    for c, is_flat, own, was in zip(brings.conditions, flat, brings.values(near)[fits].T,
+                                    off[fits].T, strict=True):  # fmt: skip
+        if is_flat and not np.all(np.abs(own) < FOLLOWED * was):
+            rule = "changes with nothing where it is 0, as a square does, so nothing enforces it"
+            raise SceneError(f"constraint '{c.name}' {rule}; say what is 0 by itself")

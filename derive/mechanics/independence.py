@@ -123,9 +123,9 @@ class _Exactly:
         return valued
 
     def _fulfil(self, function: Any, columns: Mapping[int, float], within: float) -> None:
-        """Move a state by Newton's method, damped by the square of what conditions are off by."""
+        """Move a state by Newton's method, damped by what conditions are off by, or its square."""
         first, sizes = list(self.here), [mpf(float(x)) for x in columns.values()]
-        for _ in range(ROUNDS):
+        for turn in range(2 * ROUNDS):
             valued = [(v, [x * s for x, s in zip(row, sizes, strict=True)])
                       for v, row in function(self.here)]  # fmt: skip
             weights = [mp.norm(row, 2) for _, row in valued]
@@ -133,7 +133,9 @@ class _Exactly:
             worst = max(map(abs, gaps), default=mpf(0))
             if worst < FULFILLED:
                 return
-            step = _least([row for _, row in valued], [v for v, _ in valued])
+            square = mp.fsum(v * v for v, _ in valued)
+            damping = mp.sqrt(square) if turn < ROUNDS else square
+            step = _least([row for _, row in valued], [v for v, _ in valued], damping)
             for k, s, by in zip(columns, sizes, step, strict=True):
                 self.here[k] -= s * by
             moved = [abs(self.here[k] - first[k]) / s for k, s in zip(columns, sizes, strict=True)]
@@ -142,10 +144,10 @@ class _Exactly:
         self.off, self.here = max(self.off, float(worst)), first
 
 
-def _least(slopes: Sequence[Sequence[Any]], values: Sequence[Any]) -> list[Any]:
-    """Return the least step that takes values off, damped by their square."""
+def _least(slopes: Sequence[Sequence[Any]], values: Sequence[Any], damping: Any) -> list[Any]:
+    """Return the least step that takes values off."""
     J = mp.matrix([list(row) for row in slopes])
-    square, gap = J * J.T, mp.fsum(v * v for v in values)
+    square = J * J.T
     for i in range(square.rows):
-        square[i, i] += gap
+        square[i, i] += damping
     return list(J.T * mp.lu_solve(square, mp.matrix(list(values))))

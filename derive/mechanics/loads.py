@@ -8,6 +8,7 @@ from sympy import Expr, Integer, Matrix, Rational, Symbol, sqrt
 from derive.lecture.stated import by_law
 from derive.mechanics.bodies import centre, inertia_tensor, mass
 from derive.mechanics.frames import ZERO, Frames, Located
+from derive.mechanics.meeting import ends
 from derive.mechanics.probe import NOTHING, at_rest, random_probe, vanishes
 from derive.scene import SceneError
 from derive.scene.machine import INERTIAL, Force, Gradient, Load, Spring, Weight
@@ -53,13 +54,12 @@ def _of(frames: Frames, load: Load) -> Iterator[Wrench]:
 
 
 def _force(frames: Frames, load: Force) -> Iterator[Wrench]:
-    point = (load.frame, frames.words.column(load.at))
     force, couple = frames.words.column(load.force), frames.words.column(load.couple)
-    yield Wrench(load.name, load.on, point, load.along, force, couple)
-    if load.against:
-        if load.other is not None:
-            point = (load.other[0], frames.words.column(load.other[1]))
-        yield Wrench(load.name, load.against, point, load.along, -force, -couple)
+    couples = {load.on: couple, load.against: -couple}
+    for body, places in ends(frames, load).items():
+        for point, sign in places:
+            own = couples.pop(body, ZERO)
+            yield Wrench(load.name, body, point, load.along, sign * force, own)
 
 
 def _weight(frames: Frames, load: Weight) -> Iterator[Wrench]:

@@ -12,6 +12,7 @@ from sympy import Expr, Integer, Pow
 from derive.mechanics.answers import Answers
 from derive.mechanics.balances import Balances
 from derive.mechanics.box import ranges
+from derive.mechanics.contradiction import idle_enforcer
 from derive.mechanics.follows import wants_small_motion, with_what_follows
 from derive.mechanics.frames import Frames
 from derive.mechanics.held import Bindings, bindings
@@ -111,7 +112,10 @@ class Mechanism:
     def doubts(self) -> tuple[str, ...]:
         """Return the warnings of a scene, and those that take its equations to be found."""
         idle = idle_springs(self.answers.frames)
-        return (*self.scene.warnings, *idle, *self.redundant, *self.doubts_at({}))
+        says = (*self.scene.warnings, *idle, *self.redundant, *self.doubts_at({}))
+        named = any(c.load not in ("", c.name) for c in self.scene.constraints)
+        enforcer = idle_enforcer(self.answers.balances) if named else ""
+        return (*says, enforcer) if enforcer else says
 
     @property
     def redundant(self) -> tuple[str, ...]:

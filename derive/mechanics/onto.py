@@ -17,7 +17,11 @@ from derive.mechanics.constraints import Tie
 from derive.mechanics.frames import Frames
 from derive.scene import Input
 
-ROUNDS = 60
+ROUNDS, SOON = 80, 40
+"""Corrections at most, and those that are damped by what is left: then by its square alone.
+
+By what is left, states stay where redundant conditions say nothing; weak ones need the other.
+"""
 CLOSE = 1e-11  # of a condition beside the size of its slopes: what floats leave of it
 FULFILLED = 1e-6  # of a range: what rates may be off by
 TELLING = 1e-7  # a singular value below this part of the largest is none
@@ -55,9 +59,9 @@ class Onto:
 
     def _with_places(self, points: Doubles) -> Doubles:
         """Move places of points, and return which fulfil the conditions then."""
-        columns, size = [*self.places], np.array([*self.places.values()])
+        columns, size = np.array([*self.places], int), np.array([*self.places.values()])
         fits, left = np.zeros(len(points), bool), np.arange(len(points))
-        for _ in range(ROUNDS):
+        for turn in range(ROUNDS):
             value, slopes = self._placed(points[left])
             own, gap = _of_size_one(slopes * size, value)
             known = _finite(own, gap)
@@ -69,7 +73,8 @@ class Onto:
             left, own, gap = left[going], own[going], gap[going]
             if not len(left):
                 break
-            step = _least(own, gap, CUT, np.sum(gap * gap, axis=1))
+            damping = np.linalg.norm(gap, axis=1)
+            step = _least(own, gap, CUT, damping if turn < SOON else damping * damping)
             longest = np.max(np.abs(step), axis=1, keepdims=True)
             step *= np.minimum(1.0, 0.5 / np.where(longest > 0, longest, 0.5))
             points[np.ix_(left, columns)] -= size * step
@@ -77,7 +82,7 @@ class Onto:
 
     def _with_rates(self, points: Doubles, among: Doubles) -> Doubles:
         """Move rates of some points, at once where conditions are linear in them."""
-        columns, size = [*self.rates], np.array([*self.rates.values()])
+        columns, size = np.array([*self.rates], int), np.array([*self.rates.values()])
         fits, left = np.zeros(len(points), bool), np.flatnonzero(among)
         for _ in range(ROUNDS):
             if not len(left):
@@ -103,6 +108,14 @@ class Onto:
                   for c in self.conditions]  # fmt: skip
         values = [*values, *self._functions[1](*points)[: len(self.conditions)]]
         return [*zip(names, values, strict=True)]
+
+    def values(self, points: Doubles) -> Doubles:
+        """Return what is zero of each condition at points (points, conditions)."""
+        placed = iter(self._placed(points)[0].T if self.of_places else ())
+        moving = self._moving(points)[0].T
+        each = [next(placed) if c.place is not None else moving[k]
+                for k, c in enumerate(self.conditions)]  # fmt: skip
+        return np.array(each).T
 
     def worst(self, point: Doubles) -> tuple[str, float]:
         """Return the condition that is furthest off, in sizes of ranges, and what it is."""
@@ -195,8 +208,7 @@ def _split(values: Sequence[Any], points: Doubles, columns: int) -> tuple[Double
 
 def _finite(slopes: Doubles, values: Doubles) -> Doubles:
     """Return at which points all is a number."""
-    found: Doubles = np.isfinite(slopes).all(axis=(1, 2)) & np.isfinite(values).all(axis=1)
-    return found
+    return np.asarray(np.isfinite(slopes).all(axis=(1, 2)) & np.isfinite(values).all(axis=1))
 
 
 def _of_size_one(scaled: Doubles, values: Doubles) -> tuple[Doubles, Doubles]:

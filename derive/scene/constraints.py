@@ -10,7 +10,7 @@ from derive.scene.entries import CONSTRAINT
 from derive.scene.entry import Reading, entries_of
 from derive.scene.escape import brief
 from derive.scene.formula import ZERO, symbol, symbols
-from derive.scene.machine import INERTIAL, Force, Frame, Load, Member, Unknown
+from derive.scene.machine import INERTIAL, Force, Frame, Load, Member, Scene, Unknown
 from derive.scene.names import identifier
 from derive.scene.scalars import Scalars
 from derive.scene.scope import measured
@@ -131,3 +131,26 @@ def _enforcing(name: str, meeting: Meeting) -> tuple[tuple[Force, tuple[Unknown,
                  (x, y, z), zeros, (meeting.to_frame, meeting.to))  # fmt: skip
     each = (identifier(part, f"the force of constraint '{name}'") for part in parts.values())
     return ((load, tuple(Unknown(part, "N", name) for part in each)),)
+
+
+def body_turning_with(machine: Scene, frame: str) -> str:
+    """Return the body that the axes of a frame turn with, "" if it is none, or the inertial one."""
+    root = _root(machine, frame)
+    if root == INERTIAL:
+        return INERTIAL
+    own = [b for b in machine.bodies if _root(machine, b.frame) == root]
+    spins = {b.name for b in own if b.spin or b.axial_speed or b.angular_velocity}
+    return next((b.name for b in own if b.name not in spins), "")
+
+
+def _root(machine: Scene, name: str) -> str:
+    """Return the first frame on the way to the inertial one that turns in its parent."""
+    each = {f.name: f for f in machine.frames}
+    moving = {m.name for m in (*machine.coordinates, *machine.speeds, *machine.inputs)}
+    while name != INERTIAL:
+        frame = each[name]
+        angles = {s for turn in frame.turned for s in symbols(turn.angle)}
+        if angles & moving or frame.angular_velocity is not None:
+            break
+        name = frame.parent
+    return name

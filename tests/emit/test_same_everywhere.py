@@ -68,7 +68,7 @@ WHOLE = {
     "check/target/harness.py: count_of": "values counted",
     "bench/nmpc.py: flown": "seconds of this run",
     "lower/wording.py: _names_in": "names counted",
-    "bench/links.py: by_kane": "operations counted",
+    "bench/links.py: staged": "operations counted",
     "bench/links.py: machines_beside": "components counted",
     "emit/package/tested.py: _function": "values counted",
     "command/lecture.py: _verified": "seconds of this run",

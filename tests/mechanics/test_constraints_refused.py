@@ -92,3 +92,13 @@ def test_what_is_always_0_is_left_out(zero: str) -> None:
     found = library(parse_scene(f'{loop}[constraints.none]\nzero = "{zero}"\n', "held"))
     assert found.mechanism.held.kept == ()
     assert found.mechanism.held.doubts[0].startswith("constraint 'none' says nothing that the")
+
+
+def test_a_load_of_no_power_that_is_said_to_enforce_is_doubted_where_another_does() -> None:
+    pushed = 'loads.edge = { on = "sled", along = "sled", force = ["0", "?B", "0"] }\n'
+    text = pushed + LOADED.replace(ZERO, f'{ZERO}\nload = "pin"\n{ARM}')
+    own = library(parse_scene(text, "held")).mechanism
+    says = "load 'pin' cannot enforce constraint 'blade': it has no power on any motion that the"
+    assert any(doubt.startswith(says) for doubt in own.doubts())
+    right = library(parse_scene(text.replace('load = "pin"', 'load = "edge"'), "held")).mechanism
+    assert not any("cannot enforce" in doubt for doubt in right.doubts())

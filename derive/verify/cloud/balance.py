@@ -7,8 +7,9 @@ import numpy as np
 from mpmath import mp, mpf
 from numpy.typing import NDArray
 
+from derive.scene.constraints import body_turning_with
 from derive.scene.formula import ZERO
-from derive.scene.machine import Force, Gradient, Load, Spring, Weight
+from derive.scene.machine import INERTIAL, Force, Gradient, Load, Spring, Weight
 from derive.verify.cloud.history import History
 from derive.verify.cloud.series import crossed, each
 
@@ -67,9 +68,21 @@ def _force(history: History, load: Force) -> Iterator[Acting]:
     place = at_instant(history.place(load.frame, load.at))
     force, couple = (along(history, load.along, f) for f in (load.force, load.couple))
     yield load.on, place, force, couple
+    other = place if load.other is None else at_instant(history.place(*load.other))
     if load.against:
-        place = place if load.other is None else at_instant(history.place(*load.other))
-        yield load.against, place, -force, -couple
+        yield load.against, other, -force, -couple
+    turning = _turning_with(history, load)
+    if turning:  # what its axes turn with is held by the same points
+        yield turning, place, -force, 0 * couple
+        yield turning, other, force, 0 * couple
+
+
+def _turning_with(history: History, load: Force) -> str:
+    """Return the body along whose axes points of bodies are held at one place, "" if none is."""
+    held = (c.name for c in history.machine.constraints
+            if c.meeting and not c.of_rates and c.load == c.name == load.name)  # fmt: skip
+    body = body_turning_with(history.machine, load.along) if any(held) else ""
+    return "" if body == INERTIAL else body
 
 
 def _gradient(history: History, load: Gradient, body: str) -> Acting:
