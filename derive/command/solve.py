@@ -15,6 +15,7 @@ from derive.solve.handle import STEP
 Printed = tuple[str, str, str, str]
 """What, where from, its value and its unit."""
 NOWHERE = "none in its range"
+BY = "step_rk4"
 
 
 def options(command: argparse.ArgumentParser) -> None:
@@ -36,7 +37,7 @@ def options(command: argparse.ArgumentParser) -> None:
         help="find the values of NAME, in its range, at which stability changes",
     )
     command.add_argument(
-        "--until", type=seconds, metavar="SECONDS", help="move in time by the scene's step_rk4"
+        "--until", type=seconds, metavar="SECONDS", help="move in time by a step of the scene's"
     )
     command.add_argument(
         "--step",
@@ -44,6 +45,7 @@ def options(command: argparse.ArgumentParser) -> None:
         metavar="SECONDS",
         help=f"longest step, of which --until is a multiple ({STEP:g})",
     )
+    command.add_argument("--by", metavar="NAME", help=f"that step ({BY})")
     command.add_argument(
         "--stop",
         metavar="EQUATION",
@@ -145,6 +147,9 @@ def _require_one_question(given: argparse.Namespace) -> None:
     if given.step is not None and given.until is None:
         rule = "a step is of a motion and needs --until SECONDS"
         raise derive.DeriveError(f"--step {given.step:g}: {rule}")
+    if given.by is not None and given.until is None:
+        rule = "a step moves in time and needs --until SECONDS"
+        raise derive.DeriveError(f"--by {typed(given.by)}: {rule}")
     if given.stop is not None and given.until is None:
         rule = "an event ends a motion and needs --until SECONDS"
         raise derive.DeriveError(f"--stop {typed(given.stop)}: {rule}")
@@ -158,7 +163,8 @@ def _simulated(
 ) -> tuple[list[Printed], tuple[str, ...]]:
     """Return the state at the end of a motion, and warnings; write its plot to a named file."""
     step = STEP if given.step is None else given.step
-    motion = scene.simulate(values, given.until, step, given.plot, given.stop)
+    by = BY if given.by is None else given.by
+    motion = scene.simulate(values, given.until, step, given.plot, given.stop, by)
     digits = 6 if given.stop is None else 12
     at = f"at {motion.times[-1]:.{digits}g} s"
     rows = [(at, n, f"{v[-1]:z.12g}", motion.units[n]) for n, v in motion.states.items()]

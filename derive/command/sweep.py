@@ -18,7 +18,7 @@ import derive
 from derive.command.parsed import location, seconds, typed
 from derive.command.solve import values_named
 from derive.command.terminal import complain, console, error_console, print_rows
-from derive.solve.sweep.request import ERROR
+from derive.solve.sweep.request import ERROR, MOVED_AT_MOST
 
 INSTANTS = 20
 LONGEST = 16
@@ -85,6 +85,10 @@ def options(command: argparse.ArgumentParser) -> None:
         "--chunk", type=number_of, metavar="N", help="members a task and file (a second's work)"
     )
     command.add_argument(
+        "--near", type=seconds, metavar="PART",
+        help=f"of its range, that a start is moved at most onto constraints ({MOVED_AT_MOST:g})",
+    )  # fmt: skip
+    command.add_argument(
         "--out", type=location, required=True, metavar="DIR",
         help="folder for the results, as runs.parquet; the page is runs.html",
     )  # fmt: skip
@@ -113,7 +117,7 @@ def sweep(given: argparse.Namespace) -> int:
         found = scene.sweep(
             vary, given.out, given.until, keep, values, given.samples, given.stop, given.error,
             given.step, given.seed, given.instants, given.pairs, given.workers, given.scheduler,
-            given.chunk, told,
+            given.chunk, given.near, told,
         )  # fmt: skip
     for doubt in found.doubts:
         complain(f"derive: warning: {doubt}", "yellow")

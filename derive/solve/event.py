@@ -1,6 +1,6 @@
 """An event that ends a motion: an equation such as ``theta = 0``, met between two steps."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,11 +15,10 @@ from derive.scene.functions import FUNCTIONS, PLAIN
 from derive.scene.scope import Scope, measured
 from derive.scene.unit import BESIDE_SI, NONE, Dimension, dimension, spelled
 from derive.scene.wanted import moves
+from derive.solve.crossing import crossed_in
 from derive.solve.instrument import Instrument
 from derive.solve.told import met
 
-HALVINGS = 60
-"""Of a step: what is left of it is below the roundings of any time in it."""
 CASADI = {
     "number": float,
     **PLAIN,
@@ -95,6 +94,42 @@ def residual(found: Instrument, given: Mapping[str, float], names: Sequence[str]
     return casadi.Function("event", [x], [evaluate(of.left, known | values, CASADI)])
 
 
+@dataclass
+class _Alone:
+    """A motion within a step: the state, the residual of it, and the state after a time."""
+
+    state: NDArray[np.float64]
+    left: Any
+    moved: Any
+
+    def on(self, length: float) -> None:
+        """Go on by so many seconds."""
+        self.state = np.array(self.moved(self.state, length)).ravel()
+
+    def residual(self) -> NDArray[np.float64]:
+        """Return what is zero when the event happens."""
+        return np.array(self.left(self.state)).ravel()
+
+    def here(self) -> NDArray[np.float64]:
+        """Return the state as it is."""
+        return self.state
+
+    def to(self, places: NDArray[np.float64], which: NDArray[np.bool_]) -> None:
+        """Be where the motion was."""
+        if which.all():
+            self.state = places
+
+
+def has_value(left: Any, columns: NDArray[np.float64]) -> bool:
+    """Tell whether a residual is a number at any of these states."""
+    return bool(np.isfinite(np.array(left.map(columns.shape[1])(columns))).any())
+
+
+def no_value(scene: str, of: Event) -> str:
+    """Return the sentence on an event that nothing can tell of, as there is never a number."""
+    return f"scene '{scene}': stop '{brief(of.text)}' has no value anywhere on the way"
+
+
 def first_met(left: Any, columns: NDArray[np.float64], moved: Any, step: float) -> Any:
     """Return how many states stand before an event, the time since the last, the state then.
 
@@ -103,60 +138,26 @@ def first_met(left: Any, columns: NDArray[np.float64], moved: Any, step: float) 
     that of a pole. A residual that turns back within a step is followed to where it turns.
     """
     values = np.array(left.map(columns.shape[1])(columns)).ravel()
-    way = _along(left, moved)
-    for k, part in _brackets(values, columns, way, step):
-        start, before, low, high = columns[:, k - 1], values[k - 1], 0.0, part
-        beyond = max(abs(before), abs(float(way[0](start, high))))
-        for _ in range(HALVINGS):
-            middle = (low + high) / 2
-            if float(way[0](start, middle)) * before > 0:
-                low = middle
-            else:
-                high = middle
-        state = np.array(moved(start, high)).ravel()
-        if abs(float(left(state))) <= beyond:
-            return k, high, state
+    slopes = _slopes(left, columns, moved, step)
+    for k in range(1, len(values)):
+        before, after = values[k - 1], values[k]
+        crosses = before * after < 0 or (after == 0 and before != 0)
+        turns = not crosses and before * slopes[0][k - 1] < 0 < after * slopes[1][k - 1]
+        if not (turns or crosses):
+            continue
+        way = _Alone(columns[:, k - 1], left, moved)
+        (rest,), (met,) = crossed_in(way, values[k - 1 : k], step, np.array([bool(turns)]))
+        if met and abs(way.residual()[0]) <= max(abs(before), abs(after)):
+            return k, rest, way.state
     return None
 
 
-InTime = tuple[Any, Any]
-
-
-def _along(left: Any, moved: Any) -> InTime:
-    """Return a residual and its slope in time, of the state before a step and the time since."""
-    x, h = casadi.SX.sym("x", moved.size1_in(0)), casadi.SX.sym("h")
-    value = left(moved(x, h))
-    return (
-        casadi.Function("value", [x, h], [value]),
-        casadi.Function("slope", [x, h], [casadi.jacobian(value, h)]),
-    )
-
-
-def _brackets(
-    values: NDArray[np.float64], columns: NDArray[np.float64], way: InTime, step: float
-) -> Iterator[tuple[int, float]]:
-    """Yield the steps, counted from one, and the times in them by which a residual has crossed."""
-    slopes = [
-        np.array(way[1].map(len(values))(columns, np.full(len(values), time))).ravel()
-        for time in (0.0, step)
-    ]
-    for k in range(1, len(values)):
-        before, after = values[k - 1], values[k]
-        if before * after < 0 or (after == 0 and before != 0):
-            yield k, step
-        elif before * slopes[0][k - 1] < 0 < after * slopes[1][k - 1]:
-            turn = _turn(columns[:, k - 1], way, step)
-            if float(way[0](columns[:, k - 1], turn)) * before <= 0:
-                yield k, turn
-
-
-def _turn(start: NDArray[np.float64], way: InTime, step: float) -> float:
-    """Return the time within a step at which a residual turns back."""
-    first, low, high = float(way[1](start, 0.0)), 0.0, step
-    for _ in range(HALVINGS):
-        middle = (low + high) / 2
-        if float(way[1](start, middle)) * first > 0:
-            low = middle
-        else:
-            high = middle
-    return high
+def _slopes(
+    left: Any, columns: NDArray[np.float64], moved: Any, step: float
+) -> list[NDArray[np.float64]]:
+    """Return the slopes in time of a residual at the start of the step from each state, and end."""
+    x, h = casadi.SX.sym("x", len(columns)), casadi.SX.sym("h")
+    slope = casadi.Function("slope", [x, h], [casadi.jacobian(left(moved(x, h)), h)])
+    many = columns.shape[1]
+    each = slope.map(many)
+    return [np.array(each(columns, np.full((1, many), t))).ravel() for t in (0.0, step)]

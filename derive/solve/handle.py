@@ -157,24 +157,21 @@ class Handle:
         return self._instrument.doubts(self._settings(values))
 
     def simulate(
-        self,
-        values: NamedValues,
-        until: float,
-        step: float = STEP,
-        plot: str | Path | None = None,
-        stop: str | None = None,
-    ) -> Simulation:
-        """Return the motion from the state in ``values``, other inputs held, by ``step_rk4``.
+        self, values: NamedValues, until: float, step: float = STEP,
+        plot: str | Path | None = None, stop: str | None = None, by: str = "step_rk4",
+    ) -> Simulation:  # fmt: skip
+        """Return the motion from the state in ``values``, other inputs held.
 
         until : s, the end        step : s, at most the length of a step, all being equal
         plot  : a file that the motion is drawn to, as SVG
         stop  : an equation such as "theta = 0", at which the motion ends if it comes before
+        by    : the step, one of those that the scene wants
         """
         file = None if plot is None else path("plot", plot)
         if file is not None:
             require_another_file(file, self.scene.text)
             require_writable(file)
-        motion = simulated(self._instrument, self._settings(values), until, step, stop)
+        motion = simulated(self._instrument, self._settings(values), until, step, stop, by)
         if file is not None:
             write(file.parent, {file.name: plot_of(motion)})
         return motion
@@ -184,7 +181,7 @@ class Handle:
         values: NamedValues | None = None, samples: float = 1, stop: str | None = None,
         error: float | None = None, step: float | None = None, seed: int = 0, instants: int = 20,
         pairs: int = 0, workers: int | None = None, scheduler: str | None = None,
-        chunk: int | None = None, told: ToldOfSweep = unheard,
+        chunk: int | None = None, near: float | None = None, told: ToldOfSweep = unheard,
     ) -> Ensemble:  # fmt: skip
         """Move very many members, each with its own numbers, and keep what becomes of them.
 
@@ -194,11 +191,12 @@ class Handle:
         values  : what does not vary      samples : draws, at each point of the grids if any
         error   : that the length of the step is to keep to, or ``step``, s, is told
         pairs   : of points that sensitivities are estimated from, a power of two, or 0
+        near    : parts of its range, by which a start is moved at most onto constraints (0.5)
         workers : processes here, or ``scheduler``, the address of one of Dask's
         """
         own = self._settings({} if values is None else values)
         asked = Request(vary, samples, until, keep, stop, error, step, seed, instants, pairs,
-                        workers, scheduler, chunk)  # fmt: skip
+                        workers, scheduler, chunk, near)  # fmt: skip
         into = path("folder", folder)
         listener(told)
         return swept_and_shown(self._instrument, self.source, own, asked, into, told)

@@ -10,11 +10,14 @@ import casadi
 import numpy as np
 from numpy.typing import NDArray
 
+from derive.library.library import Library
 from derive.program.program import Quantity
+from derive.report.wishes import STEPS
 from derive.scene import SceneError
+from derive.scene.table import one_of
 from derive.scene.unit import behind
 from derive.solve.arguments import one_number
-from derive.solve.event import event, first_met, residual
+from derive.solve.event import event, first_met, has_value, no_value, residual
 from derive.solve.instrument import Instrument
 from derive.solve.lacking import advice_on
 from derive.solve.onto_constraints import left_of_constraints, start_on_constraints
@@ -48,8 +51,9 @@ def simulated(
     until: float,
     step: float,
     stop: str | None = None,
+    by: object = STEP,
 ) -> Simulation:
-    """Return the motion from the state in ``given``, other inputs held, by ``step_rk4``.
+    """Return the motion from the state in ``given``, other inputs held, ``by`` a step of the scene.
 
     Steps are as long as each other, at most ``step``, and end at ``until``, or where ``stop``
     holds first: the last step is as short as that needs.
@@ -62,8 +66,9 @@ def simulated(
     count = _count(until, step)
     step = until / count if count else step
     scene = found.library.scene
-    if STEP not in scene.wanted:
+    if by == STEP and STEP not in scene.wanted:
         raise SceneError(advice_on(scene, STEP, "a simulation"))
+    name = one_of(by, f"{label}: by", steps_by_state(found.library))
     states = found.library.vocabulary.states
     names = [c for q in states for c in q.components]
     missing = [n for n in names if n not in given]
@@ -72,14 +77,16 @@ def simulated(
     given, mended = start_on_constraints(found, given)
     sought = None if stop is None else event(found, given, stop)
     start = [float(given[n]) for n in names]
-    moved = _one_step(found, dict(given) | {"time_step": step}, names)
+    moved = _one_step(found, name, dict(given) | {"time_step": step}, names)
     after = moved.mapaccum("motion", count)(start).full() if count else np.zeros((len(names), 0))
     columns = np.column_stack([start, after])
     times: NDArray[np.float64] = step * np.arange(columns.shape[1], dtype=np.float64)
     doubts = mended
     if sought is not None:
         left, h = residual(found, given, names, sought), casadi.SX.sym("h")
-        part = _one_step(found, dict(given) | {"time_step": h}, names, [h])
+        if not has_value(left, columns):
+            raise SceneError(no_value(found.name, sought))
+        part = _one_step(found, name, dict(given) | {"time_step": h}, names, [h])
         if (met := first_met(left, columns, part, step)) is None:
             doubts.append(f"'{sought.text}' is not met by {until:g} s")
         else:
@@ -123,7 +130,16 @@ def _count(until: float, step: float) -> int:
             f"until must be at most {LONGEST_MOTION:,} steps of {step:g} s, that is "
             f"{LONGEST_MOTION * step:g} s, not {until:g}"
         )
-    return ceil(until / step * (1 - ROUNDING))
+    return steps_until(until, step)
+
+
+def steps_until(until: float, longest: float) -> int:
+    """Return how many steps of one length end at a time, none of them longer than asked.
+
+    >>> steps_until(1.0, 0.1), steps_until(1.0, 0.3)
+    (10, 4)
+    """
+    return ceil(until / longest * (1 - ROUNDING))
 
 
 def _require_finite(
@@ -138,12 +154,24 @@ def _require_finite(
         )
 
 
+def steps_by_state(library: Library) -> tuple[str, ...]:
+    """Return the steps that a scene wants which need the state, what is held and their length."""
+    given = {q.name for q in (*library.vocabulary.states, *library.vocabulary.given())}
+
+    def fits(name: str) -> bool:
+        inputs = {q.name for q in library[name].inputs if q.role != "constants"}
+        return "time_step" in inputs and inputs <= {*given, "time_step"}
+
+    return tuple(name for name in library.scene.wanted if name in STEPS and fits(name))
+
+
 def _one_step(
-    found: Instrument, given: Mapping[str, Any], names: Sequence[str], more: Sequence[Any] = ()
-) -> Any:
+    found: Instrument, by: str, given: Mapping[str, Any], names: Sequence[str],
+    more: Sequence[Any] = (),
+) -> Any:  # fmt: skip
     """Return the step of the whole state as a CasADi function, of ``more`` symbols behind it."""
     x = casadi.SX.sym("x", len(names))
-    after = found.answer(STEP, dict(given) | {n: x[k] for k, n in enumerate(names)})
+    after = found.answer(by, dict(given) | {n: x[k] for k, n in enumerate(names)})
     following = [after.get(f"{n}_next", x[k]) for k, n in enumerate(names)]
     return casadi.Function("step", [x, *more], [casadi.vertcat(*following)])
 

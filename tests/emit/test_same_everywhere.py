@@ -102,7 +102,6 @@ WHOLE = {
     "solve/sweep/ensemble.py: _chunks_done": "members counted",
     "solve/sweep/ensemble.py: _planned": "columns counted",
     "solve/sweep/ensemble.py: unfinished": "members counted",
-    "solve/sweep/plan.py: steps": "steps counted",
     "lower/arrange/spherical_part.py: terms_of": "terms counted",
     "lecture/tree.py: size": "symbols counted",
     "lower/wording.py: spelling": "powers",

@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, replace
 from pathlib import Path
-from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -22,21 +21,23 @@ from derive.solve.sweep.closing import closing_of, require_middle_near
 from derive.solve.sweep.course import ASTRAY, REFUSED
 from derive.solve.sweep.design import Design
 from derive.solve.sweep.engine import ChunkSpan, on_cluster, on_processes
-from derive.solve.sweep.job import ENDED_AT, Job, endings_of
+from derive.solve.sweep.job import Job
 from derive.solve.sweep.keep import kept_columns
 from derive.solve.sweep.kit import kit_of
 from derive.solve.sweep.plan import SweepPlan
-from derive.solve.sweep.recommended import recommended
+from derive.solve.sweep.recommended import as_asked, verified
 from derive.solve.sweep.request import (
     ERROR,
     MOST_INSTANTS,
     MOST_WORKERS,
+    MOVED_AT_MOST,
     Request,
     above_zero,
     design_of,
     outside_at_start,
     require_installed,
     require_motion,
+    resting,
     scheduler_of,
     stop_of,
     whole_number,
@@ -52,8 +53,8 @@ from derive.solve.sweep.store import (
 )
 
 NEEDED = ("scipy", "pyarrow")
-TRIED = 256
-"""Members that are moved by half the step too, to see what its length makes of the results."""
+RULES = 2
+"""By which members move: another number where their bits are others."""
 SECONDS = 1.0
 """That a chunk is to take: what an engine adds to it, some milliseconds, is then no matter."""
 FEWEST, MOST = 2048, 1 << 18
@@ -73,7 +74,7 @@ class Ensemble:
     """A sweep that is done: where it lies, how its members ended, what is said of it.
 
     ended : "until", "stop", "not finite", "refused: ..." and how many members each
-    halved : by column, the most that half the step changes of ``TRIED`` members
+    halved : by column, the most that half the step changes in members that were tried
     """
 
     folder: Path
@@ -121,9 +122,12 @@ def swept(
     until = above_zero(label, "until", asked.until)
     instants = whole_number(f"{label}: instants", asked.instants, MOST_INSTANTS, least=1)
     known = {**values, **{s.name: s.within[0] for s in design.spreads}}
+    rest = resting(found, known)
+    values, known = {**values, **rest}, {**known, **rest}
     require_motion(found, known)
     error = ERROR if asked.error is None else above_zero(label, "error", asked.error)
     step = None if asked.step is None else above_zero(label, "step", asked.step)
+    near = MOVED_AT_MOST if asked.near is None else above_zero(label, "near", asked.near)
     closing = closing_of(found.library, [s.name for s in design.spreads])
     require_middle_near(found, design.spreads, values)
     begun = [f"{name}@0" for name in closing.moved]
@@ -134,8 +138,10 @@ def swept(
     size = asked.chunk
     if size is not None:
         size = whole_number(f"{label}: chunk", size, MOST, least=1)
+    sought = error if step is None else None
     request = {
         "scene": found.name,
+        "rules": RULES,
         "programs": digest_of_programs(found.library),
         "vary": {s.name: [s.kind, *s.ends, s.count] for s in design.spreads},
         "set": dict(sorted(values.items())),
@@ -147,12 +153,22 @@ def swept(
         "keep": [k.column for k in columns],
         "stop": stop_of(asked.stop),
         "step": step,
-        "error": error if step is None else None,
+        "error": sought,
+        "near": near,
     }
     onto = tuple(p.name for p in closing.programs)
     answers = answers_along(found, known)
     plan = SweepPlan(
-        "step_rk4", step or until, until, instants, columns, stop, answers, closing.turned, onto
+        "step_rk4",
+        step or until,
+        until,
+        instants,
+        columns,
+        stop,
+        answers,
+        closing.turned,
+        onto,
+        near,
     )
     if plan.steps > LONGEST_MOTION:
         rule = f"a member moves by at most {LONGEST_MOTION:,} steps"
@@ -163,7 +179,7 @@ def swept(
         if manifest is not None:
             require_same(folder, manifest["asked"], request)
         else:
-            manifest = _planned(library, design, plan, values, request, step, error, size,
+            manifest = _planned(library, design, plan, values, request, sought, size,
                                 closing.moved, tell)  # fmt: skip
             put_whole(folder, MANIFEST, json.dumps(manifest, indent=1, sort_keys=True).encode())
         plan = replace(plan, step=manifest["step"], length=manifest["length"])
@@ -171,7 +187,8 @@ def swept(
         kit = kit_of(library, plan.functions)
         job = Job(kit, design, plan, dict(values), json.dumps(told, sort_keys=True))
         by = _chunks_done(job, folder, manifest["chunk"], workers, scheduler, tell)
-    doubts = [*closing.doubts, *outside_at_start(found, design.spreads, values)]
+    doubts = [f"{name} is not told: members begin at rest in it" for name in rest]
+    doubts += [*closing.doubts, *outside_at_start(found, design.spreads, values)]
     if "CasADi" in by:
         doubts.append(f"{by['CasADi']} chunks were moved by CasADi: where they were is no compiler")
     page = page_beside(folder)
@@ -193,25 +210,23 @@ def page_beside(folder: Path) -> Path:
 
 def _planned(
     library: Library, design: Design, plan: SweepPlan, values: Mapping[str, float],
-    request: Mapping[str, Any], step: float | None, error: float, size: int | None,
-    moved: Sequence[str], tell: ToldOfSweep,
+    request: Mapping[str, Any], error: float | None, size: int | None, moved: Sequence[str],
+    tell: ToldOfSweep,
 ) -> dict[str, Any]:  # fmt: skip
-    """Return what a folder tells of its sweep: what was asked for, and what was found for it."""
-    if step is None:
-        of = recommended(library, plan.until, error,
-                         lambda says: tell(says, 0, design.members))  # fmt: skip
-        plan, says, replay = replace(plan, step=of.step, length=of.length), of.says, of.replay
-    else:
-        says, replay = f"{plan.step} at {step:g} s, as was asked", step
+    """Return what a folder tells of its sweep: what was asked for, and what was found for it.
+
+    error : that a step is sought for, None for that of the plan
+    """
     tell("trying half the step", 0, design.members)
     job = Job(kit_of(library, plan.functions), design, plan, values, "")
-    halved, spent = _halved(job)
-    width = 8 * (4 + sum(len(plan.instants) for _ in plan.kept))
+    of = as_asked(job) if error is None else verified(
+        library, job, error, lambda says: tell(says, 0, design.members))  # fmt: skip
+    plan, width = of.plan, 8 * (4 + sum(len(plan.instants) for _ in plan.kept))
     if size is None:
-        size = chunk_size(spent / TRIED, width)
+        size = chunk_size(of.spent, width)
     return {
         "asked": request, "step": plan.step, "length": plan.length, "steps": plan.steps,
-        "replay": replay, "says": says, "halved": halved, "chunk": size, "members": design.members,
+        "says": of.says, "halved": of.halved, "chunk": size, "members": design.members,
         "plain": design.plain, "title": library.scene.title,
         "units": {k.column: k.unit for k in plan.kept}, "moved": moved,
     }  # fmt: skip
@@ -227,24 +242,6 @@ def chunk_size(seconds: float, width: int) -> int:
     """
     most = min(MOST, SECONDS / max(seconds, 1e-12), BYTES / width)
     return max(FEWEST, 1 << max(0, int(np.log2(max(most, 1.0)))))
-
-
-def _halved(job: Job) -> tuple[dict[str, float], float]:
-    """Return the most that half the step changes of each column, and what the tried ones took."""
-    count = min(TRIED, job.design.members)
-    endings_of(job, 0, 1)
-    began = perf_counter()
-    whole = endings_of(job, 0, count)
-    spent = perf_counter() - began
-    half = endings_of(job, 0, count, replace(job.plan, length=job.plan.length / 2))
-    both = {c: (whole.columns[c], half.columns[c]) for c in whole.columns}
-    both[ENDED_AT] = whole.time, half.time
-    found = {}
-    for column, (a, b) in both.items():
-        gaps = np.abs(a - b)
-        gaps = gaps[np.isfinite(gaps)]
-        found[column] = float(gaps.max()) if gaps.size else 0.0
-    return found, spent
 
 
 def _chunks_done(

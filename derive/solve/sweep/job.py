@@ -13,6 +13,7 @@ from derive.solve.sweep.design import Design
 from derive.solve.sweep.keep import COURSE
 from derive.solve.sweep.kit import Kit, ready
 from derive.solve.sweep.plan import SweepPlan
+from derive.solve.sweep.vary import FloatColumn
 
 MEMBER, ENDED, ENDED_AT = "member", "ended", "ended_at"
 OWN_COLUMNS = (MEMBER, ENDED, ENDED_AT)
@@ -48,11 +49,10 @@ class Chunk:
     spent: tuple[float, float]
 
 
-def endings_of(job: Job, first: int, count: int, plan: SweepPlan | None = None) -> Endings:
-    """Return what becomes of some members, by the plan of a job or another one."""
-    drawn = job.design.values(first, count)
-    made, own = ready(job.kit), job.plan if plan is None else plan
-    return endings(made.functions, job.kit.library, own, {**job.values, **drawn}, count)
+def endings_of(job: Job, drawn: Mapping[str, FloatColumn], plan: SweepPlan) -> Endings:
+    """Return what becomes of members, of what varies of each, by a plan."""
+    count = len(next(iter(drawn.values())))
+    return endings(ready(job.kit).functions, job.kit.library, plan, {**job.values, **drawn}, count)
 
 
 def chunk_made(job: Job, first: int, count: int) -> Chunk:
@@ -62,7 +62,7 @@ def chunk_made(job: Job, first: int, count: int) -> Chunk:
 
     made, began = ready(job.kit), perf_counter()
     drawn = job.design.values(first, count)
-    found = endings(made.functions, job.kit.library, job.plan, {**job.values, **drawn}, count)
+    found = endings_of(job, drawn, job.plan)
     moved = perf_counter()
     columns = {MEMBER: pa.array(np.arange(first, first + count)),
                **{name: pa.array(x) for name, x in drawn.items()},

@@ -3,6 +3,9 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import isfinite
+from typing import Any
+
+import numpy as np
 
 from derive.scene import SceneError
 from derive.scene.table import MANY, nearest, shown
@@ -11,7 +14,8 @@ from derive.solve.instrument import Instrument
 from derive.solve.told import met
 
 COURSE = "course"
-WORDS = ("end", "max", "min")
+EXTREMES: Mapping[str, Any] = {"max": np.maximum, "min": np.minimum}
+WORDS = ("end", *EXTREMES)
 MOST_KEPT = 200
 
 

@@ -1,10 +1,10 @@
 """Members side by side, a lane each: their state moved by steps, their answers, some of them apart.
 
-A state lies in two places by turns, the one before the last step and the one after it. Which lane a
-member has changes no bit of it.
+A state lies in places by turns: after the last step, before it, and before the step before that
+one. Which lane a member has changes no bit of it.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from derive.library.library import Library
 from derive.program.program import Program, Quantity
-from derive.program.status import RIGHT
 from derive.scene.formula import Arithmetic, evaluate
 from derive.scene.functions import FUNCTIONS, PLAIN
 from derive.solve.sweep.kit import ByMembers
@@ -32,8 +31,6 @@ ROUNDS = 60
 """Until a start that comes nearer to the constraints must be on them."""
 CLOSE = 1e-22
 """The square of a distance, in parts of ranges, from which one more correction leaves rounding."""
-UNCLOSED = -1
-"""What stands in the place of set-up's status where no start fulfils the constraints."""
 ByQuantity = dict[str, NDArray[Any]]
 """(components, lanes) of each quantity."""
 
@@ -44,7 +41,7 @@ class Lanes:
 
     ids   : of each lane, its member                constants : for all, or of each lane a column
     alone : by component what is held, a number or (lanes,)        held : the same by quantity
-    state : before and after the last step          turn : which of both is now
+    state : after the last steps, a place each      turn : which of them is now
     """
 
     by: ByMembers
@@ -54,7 +51,7 @@ class Lanes:
     constants: NDArray[Any] | None
     alone: dict[str, Any]
     held: ByQuantity
-    state: tuple[ByQuantity, ByQuantity]
+    state: tuple[ByQuantity, ...]
     turn: int = 0
     calls: dict[tuple[str, int], tuple[Callable[[float], None], list[Any]]] = field(
         default_factory=dict
@@ -72,12 +69,42 @@ class Lanes:
     @property
     def before(self) -> ByQuantity:
         """Return the state before the last step."""
-        return self.state[1 - self.turn]
+        return self.state[self.turn - 1]
 
-    def on(self, length: float) -> None:
-        """Take a step of so many seconds."""
-        self._called(self.plan.step, length, self.before)
-        self.turn = 1 - self.turn
+    @property
+    def earlier(self) -> ByQuantity:
+        """Return the state before the last two steps."""
+        return self.state[self.turn - 2]
+
+    def on(self, length: float, count: int = 1) -> None:
+        """Take so many steps, each of so many seconds."""
+        places = len(self.state)
+        for _ in range(count):
+            call, _results = self._prepared(self.plan.step, self._following)
+            call(length)
+            self.turn = (self.turn + 1) % places
+        self.fresh.clear()
+
+    def undo(self) -> None:
+        """Be where all were before the last step."""
+        self._go(self.turn - 1)
+
+    def here(self) -> ByQuantity:
+        """Return the state as it is, of its own."""
+        return {name: x.copy() for name, x in self.now.items()}
+
+    def to(self, state: ByQuantity, which: NDArray[np.bool_]) -> None:
+        """Take some lanes to a state."""
+        for name, place in self.now.items():
+            place[:, which] = state[name][:, which]
+        self.fresh.clear()
+
+    @property
+    def _following(self) -> ByQuantity:
+        return self.state[(self.turn + 1) % len(self.state)]
+
+    def _go(self, turn: int) -> None:
+        self.turn = turn % len(self.state)
         self.fresh.clear()
 
     def onto(self) -> NDArray[np.bool_]:
@@ -89,15 +116,25 @@ class Lanes:
         for name in self.plan.onto:
             there = np.zeros(len(self), bool)
             for _ in range(ROUNDS):
-                off = self._called(name, 0.0, self.before)[-1][0]
-                for of, place in self.before.items():
+                off = self._called(name, 0.0, self._following)[-1][0]
+                for of, place in self._following.items():
                     place[:, there] = self.now[of][:, there]
-                self.turn = 1 - self.turn
+                self._go(self.turn + 1)
                 there |= off < CLOSE * self._square_of_size()
                 if (there | ~np.isfinite(off)).all():
                     break
             right &= there
         return right
+
+    def parts_from(self, state: ByQuantity) -> FloatColumn:
+        """Return how far each lane is from a state, in parts of the declared ranges."""
+        found = np.zeros(len(self))
+        for q in self.library.vocabulary.states:
+            wide = float(q.ends[1] - q.ends[0])
+            np.maximum(
+                found, np.abs(self.now[q.name] - state[q.name]).max(axis=0) / wide, out=found
+            )
+        return found
 
     def _square_of_size(self) -> FloatColumn:
         """Return the largest component of each lane in parts of its range, squared, above one."""
@@ -106,12 +143,6 @@ class Lanes:
             wide = float(q.ends[1] - q.ends[0])
             np.maximum(found, ((self.before[q.name] / wide) ** 2).max(axis=0), out=found)
         return found
-
-    def back(self, which: NDArray[np.bool_]) -> None:
-        """Take some lanes back to where they were before the last step."""
-        for name, place in self.now.items():
-            place[:, which] = self.before[name][:, which]
-        self.fresh.clear()
 
     def value(self, component: str) -> Any:
         """Return a component of the state, an answer, or what is held: (lanes,) or a number."""
@@ -132,28 +163,33 @@ class Lanes:
         return whole
 
     def are_finite(self) -> NDArray[np.bool_]:
-        """ToldOfSweep of which lanes the state is made of numbers."""
+        """Tell of which lanes the state is made of numbers."""
         found = np.ones(len(self), bool)
         for place in self.now.values():
             found &= np.isfinite(place).all(axis=0)
         return found
 
-    def chosen(self, which: NDArray[np.bool_], state: ByQuantity | None = None) -> "Lanes":
-        """Return some lanes alone, in the state that they are in, or in another."""
+    def chosen(
+        self, which: NDArray[np.bool_], state: ByQuantity | None = None, back: int = 0
+    ) -> "Lanes":
+        """Return some lanes alone, in the state that they are in, or in another.
+
+        back : how many states before it are taken along
+        """
 
         def own(x: Any) -> Any:
             there = isinstance(x, np.ndarray) and x.shape[-1:] == which.shape and x.ndim > 0
             return np.ascontiguousarray(x[..., which]) if there else x
 
         of = self.now if state is None else state
-        first = {name: own(x) for name, x in of.items()}
-        second = {name: np.zeros_like(x) for name, x in first.items()}
+        each = [of, *(self.state[self.turn - k] for k in range(1, back + 1))]
+        places = places_for([{n: own(x) for n, x in one.items()} for one in each], len(self.state))
         lone = self.constants is None or self.constants.ndim == 1
         return Lanes(
             self.by, self.library, self.plan, self.ids[which],
             self.constants if lone else own(self.constants),
             {n: own(x) for n, x in self.alone.items()},
-            {n: own(x) for n, x in self.held.items()}, (first, second),
+            {n: own(x) for n, x in self.held.items()}, places,
         )  # fmt: skip
 
     def beside(self, more: Sequence["Lanes"]) -> "Lanes":
@@ -164,14 +200,13 @@ class Lanes:
             return np.concatenate(each, axis=-1) if isinstance(like, np.ndarray) else like
 
         first = {n: all_of([o.now[n] for o in every], x) for n, x in self.now.items()}
-        second = {name: np.zeros_like(x) for name, x in first.items()}
         lone = self.constants is None or self.constants.ndim == 1
         return Lanes(
             self.by, self.library, self.plan, np.concatenate([o.ids for o in every]),
             self.constants if lone else all_of([o.constants for o in every], self.constants),
             {n: all_of([o.alone[n] for o in every], x) for n, x in self.alone.items()},
             {n: all_of([o.held[n] for o in every], x) for n, x in self.held.items()},
-            (first, second),
+            places_for([first], len(self.state)),
         )  # fmt: skip
 
     def _answer(self, component: str, function: str) -> Any:
@@ -183,6 +218,14 @@ class Lanes:
         raise KeyError(component)
 
     def _called(self, function: str, length: float, into: ByQuantity) -> list[Any]:
+        call, results = self._prepared(function, into)
+        call(length)
+        return results
+
+    def _prepared(
+        self, function: str, into: ByQuantity
+    ) -> tuple[Callable[[float], None], list[Any]]:
+        """Return a call from the state where it is now, and the room for its results."""
         key = (function, self.turn)
         if key not in self.calls:
             program = self.library[function]
@@ -190,9 +233,7 @@ class Lanes:
             given = self.held | self.now
             made = self.by.call(function, self._read_by(program), given, found, len(self))
             self.calls[key] = made, found
-        call, results = self.calls[key]
-        call(length)
-        return results
+        return self.calls[key]
 
     def _room(self, q: Quantity, into: ByQuantity) -> NDArray[Any]:
         place = into.get(q.name.removesuffix("_next"))
@@ -216,49 +257,7 @@ class _Read(dict[str, Any]):
         return self.lanes.value(name)
 
 
-def lanes_begun(
-    by: ByMembers,
-    library: Library,
-    plan: SweepPlan,
-    given: Mapping[str, FloatColumn | float],
-    ids: NDArray[np.int64],
-) -> tuple[Lanes, NDArray[np.int32]]:
-    """Return members at their start, and what set-up says of each: 0 is right, or UNCLOSED.
-
-    given : each component, a number for all or (all members,)
-    """
-    own = {n: x[ids] if isinstance(x, np.ndarray) else x for n, x in given.items()}
-    count = len(ids)
-
-    def rows(q: Quantity) -> NDArray[Any]:
-        middle = float(((q.low or 0) + (q.high or 0)) / 2)
-        each = [np.broadcast_to(own.get(c, middle), count) for c in q.components]
-        return np.array(each, dtype=np.float64)
-
-    setup = list(library.setup.inputs)
-    constants, status = None, np.zeros(count, np.int32)
-    if setup and not library.fixed:
-        varies = any(isinstance(own.get(c), np.ndarray) for q in setup for c in q.components)
-        parameters = np.concatenate([rows(q) for q in setup])
-        constants, status = by.setup(parameters if varies else parameters[:, :1].copy())
-        if not varies:
-            constants, status = constants[:, 0].copy(), np.repeat(status, count)
-    held = _held(library, plan.functions)
-    state = {q.name: rows(q) for q in library.vocabulary.states}
-    for name in plan.turned:
-        w, x, y, z = state[name]
-        state[name] /= np.sqrt(w * w + x * x + y * y + z * z)
-    other = {name: np.zeros_like(x) for name, x in state.items()}
-    lanes = Lanes(by, library, plan, ids, constants, own, {q.name: rows(q) for q in held},
-                  (state, other))  # fmt: skip
-    if plan.onto:
-        status = np.where((status == RIGHT) & ~lanes.onto(), UNCLOSED, status)
-    return lanes, status
-
-
-def _held(library: Library, functions: Sequence[str]) -> list[Quantity]:
-    """Return what functions are given beside the state, constants and the length of a step."""
-    states = {q.name for q in library.vocabulary.states}
-    each = [q for name in functions for q in library[name].inputs]
-    return [q for q in {q.name: q for q in each}.values()
-            if q.role != "constants" and q.name not in (*states, "time_step")]  # fmt: skip
+def places_for(there: Sequence[ByQuantity], count: int) -> tuple[ByQuantity, ...]:
+    """Return room for so many states: one, those before it from the last place on, nothing."""
+    none = ({n: np.zeros_like(x) for n, x in there[0].items()} for _ in range(count - len(there)))
+    return there[0], *none, *reversed(there[1:])

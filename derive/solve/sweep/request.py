@@ -7,6 +7,7 @@ from math import isfinite
 from typing import Any
 
 from derive.scene import SceneError
+from derive.scene.declaration import Input
 from derive.scene.table import shown
 from derive.scene.unit import behind
 from derive.solve.arguments import one_number
@@ -25,6 +26,8 @@ MOST_SEED = 2**63 - 1
 MOST_INSTANTS = 10_000
 MOST_WORKERS = 4096
 ERROR = 1e-6
+MOVED_AT_MOST = 0.5
+"""Of its declared range, how far a component is moved at most so that constraints hold."""
 
 
 @dataclass(frozen=True)
@@ -44,6 +47,7 @@ class Request:
     workers: Any
     scheduler: object
     chunk: Any
+    near: Any
 
 
 def require_installed(modules: Sequence[str]) -> None:
@@ -91,6 +95,14 @@ def above_zero(label: str, name: str, value: Any) -> float:
     if not (isfinite(found) and found > 0):
         raise SceneError(f"{label}: {name} must be a number above zero, not {found:g}")
     return found
+
+
+def resting(found: Instrument, known: Mapping[str, float]) -> dict[str, float]:
+    """Return the rates of coordinates that nobody tells: members begin at rest in them."""
+    states = {c for q in found.library.vocabulary.states for c in q.components}
+    rates = (c.rate for c in found.library.scene.coordinates)
+    names = [rate.name for rate in rates if isinstance(rate, Input)]
+    return {name: 0.0 for name in names if name in states and name not in known}
 
 
 def require_motion(found: Instrument, known: Mapping[str, float]) -> None:

@@ -13,6 +13,7 @@ from derive.emit.files import write
 from derive.emit.templates import TEMPLATES
 from derive.scene import argument
 from derive.solve.instrument import Instrument
+from derive.solve.simulation import STEP
 from derive.solve.sweep.course import STOPPED
 from derive.solve.sweep.drawing import bars, fan_drawn, histogram
 from derive.solve.sweep.ensemble import Ensemble, ToldOfSweep, swept
@@ -50,8 +51,11 @@ def page_of(found: Instrument, source: str, of: Ensemble) -> str:
     numbers = [*([stops] if stops else []), *numbers]
     times = [asked["until"] * k / asked["instants"] for k in range(asked["instants"] + 1)]
     courses = {c: times for c in asked["keep"] if c.endswith(f"@{COURSE}")}
-    says = summary(of.folder, of.plain, varied, begun, numbers, courses)
+    says = summary(of.folder, of.plain, varied, begun, asked["set"], numbers, courses)
     units = {**told["units"], ENDED_AT: "s"}
+    wide = {c: float(q.ends[1] - q.ends[0])
+            for q in found.library.vocabulary.states for c in q.components}  # fmt: skip
+    off = [(name, by, by / wide[name]) for name, by in says.off.items()]
     return TEMPLATES.get_template("sweep.html.jinja").render(
         of=of,
         told=told,
@@ -65,6 +69,7 @@ def page_of(found: Instrument, source: str, of: Ensemble) -> str:
         scatters={s.column: s for s in says.scatters},
         replay=lambda inputs, column="": replayed(source, told, inputs, column),
         units=units,
+        off=off,
         ways=told["asked"]["vary"],
         in_words=in_words,
         most=min(MOST_READ, of.plain),
@@ -100,6 +105,7 @@ def replayed(source: str, told: Mapping[str, Any], inputs: Mapping[str, float], 
     word = column.partition("@")[2]
     until = asked["until"] if word in ("", *WORDS) else float(word)
     command = ["derive", "solve", source, "--set", *values, "--until", f"{until!r}"]
-    command += ["--step", f"{told['replay']!r}"]
+    command += ["--step", f"{asked['until'] / told['steps']!r}"]
+    command += ["--by", told["step"]] if told["step"] != STEP else []
     command += ["--stop", asked["stop"]] if asked["stop"] else []
     return shlex.join(command)

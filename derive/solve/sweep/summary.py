@@ -88,33 +88,43 @@ class Lost:
 
 @dataclass(frozen=True)
 class Summary:
-    """What the files of a sweep say."""
+    """What the files of a sweep say.
+
+    off : how far a member begins at most from what was drawn or set, by component
+    """
 
     scatters: tuple[Scatter, ...]
     fans: tuple[Fan, ...]
     extremes: tuple[WorstMember, ...]
     lost: tuple[Lost, ...]
     influences: tuple[Influence, ...]
+    off: Mapping[str, float]
 
 
 def summary(
     folder: Path, plain: int, varied: Sequence[str], begun: Mapping[str, str],
+    held: Mapping[str, float],
     numbers: Sequence[str], courses: Mapping[str, Sequence[float]],
 ) -> Summary:  # fmt: skip
     """Return what the files of a sweep say.
 
     plain : members that are not there for sensitivities alone
     begun : states that members are brought to at their start, and the columns that tell where
+    held  : what is set
     numbers, courses : columns of numbers, and of courses with their instants
     """
     heads: dict[str, list[FloatColumn]] = {c: [] for c in (*numbers, *courses)}
     extremes: dict[tuple[str, str], WorstMember] = {}
     lost: list[Lost] = []
+    off: dict[str, float] = {}
     rest: dict[str, list[FloatColumn]] = {c: [] for c in numbers}
     for table in _each_file(folder):
         member = np.asarray(table[MEMBER])
         own = member < plain
         inputs = {name: table[name] for name in varied}
+        for name, column in begun.items():
+            gaps = np.abs(table[column] - inputs.get(name, held.get(name, np.nan)))
+            off[name] = max(off.get(name, 0.0), float(np.max(gaps[np.isfinite(gaps)], initial=0.0)))
         inputs |= {name: table[column] for name, column in begun.items()}
         for k in np.flatnonzero([str(how).startswith((ASTRAY, REFUSED)) for how in table[ENDED]]):
             if len(lost) < LISTED:
@@ -134,6 +144,7 @@ def summary(
         tuple(extremes[key] for key in sorted(extremes, key=lambda k: numbers.index(k[0]))),
         tuple(lost),
         tuple(i for c in numbers for i in _influence(c, np.concatenate(rest[c]), varied)),
+        off,
     )  # fmt: skip
 
 

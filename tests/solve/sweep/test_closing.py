@@ -14,6 +14,8 @@ import pytest
 import derive
 from derive.check.compiler import HOW_TO_GET_ONE, CompilerError
 from derive.solve.sweep import kit, lanes
+from derive.solve.sweep.beginning import FAR_OFF
+from derive.solve.sweep.course import WHY
 from tests.motion.test_constrained import SLED, handle
 from tests.solve.sweep.test_sweep import columns, same
 
@@ -47,7 +49,7 @@ def cranks(tmp_path_factory: pytest.TempPathFactory) -> derive.Ensemble:
     folder = tmp_path_factory.mktemp("cranks")
     return handle(folder, "slider_crank_guided", "step_rk4", "kinetic_energy").sweep(
         LENGTHS, folder / "runs", 0.2, ["a@end", "b"], CRANK | ROD, 500, step=0.01, workers=1,
-        instants=2,
+        instants=2, near=1,
     )  # fmt: skip
 
 
@@ -113,10 +115,25 @@ def test_an_attitude_that_varies_by_components_begins_at_length_one(tmp_path: Pa
 
 
 @pytest.mark.long
-def test_the_report_finds_a_step_for_what_is_held(tmp_path: Path) -> None:
+def test_a_step_is_found_for_what_is_held(tmp_path: Path) -> None:
     own = swept_sled(tmp_path, step=None, samples=64)
-    assert own.says.endswith("keeps below 1e-06 over 0.5 s from the hardest states found")
+    assert own.says.startswith("step_rk4 at 41 ms keeps below 1e-06 over 0.5 s in the 64 members")
     assert own.halved["psi@end"] < 1e-6
+
+
+def test_a_start_that_is_far_off_is_refused_and_the_page_tells_how_far_others_are(
+    tmp_path: Path,
+) -> None:
+    turned = swept_sled(tmp_path, vary={"psi": "uniform(-1, 2)"}, near=0.25)
+    found = columns(turned)
+    wide = {"x_dot": 2.0, "y_dot": 2.0}
+    off = [np.abs(found[f"{n}@0"] - BLADE[n]) / size for n, size in wide.items()]
+    ended = found["ended"] != "until"
+    assert {*found["ended"][ended]} == {f"refused: {WHY[FAR_OFF]}"}
+    assert 20 < ended.sum() < 180
+    assert np.nanmax(off) <= 0.25
+    page = turned.page.read_text(encoding="utf-8")
+    assert f"({100 * np.nanmax(off[1]):.2g} % of its range)" in page
 
 
 @pytest.mark.long
@@ -159,7 +176,7 @@ def test_a_loop_that_does_not_close_is_counted_and_kept(tmp_path: Path) -> None:
     held = {n: x for n, x in CRANK.items() if n != "a"}
     own = handle(tmp_path, "slider_crank_guided", "step_rk4").sweep(
         LENGTHS | {"a": "uniform(1.4, 1.6)"}, tmp_path / "runs", 0.1, ["b@end"], held | ROD, 500,
-        step=0.01, workers=1,
+        step=0.01, workers=1, near=1,
     )  # fmt: skip
     found = columns(own)
     lost = found["ended"] == "refused: no start nearby fulfils the constraints"

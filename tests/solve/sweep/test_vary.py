@@ -13,7 +13,7 @@ from derive.command.sweep import follower
 from derive.solve.sweep.design import Design
 from derive.solve.sweep.summary import _influence
 from derive.solve.sweep.vary import Spread
-from tests.solve.sweep.swept_tops import swept_top
+from tests.solve.sweep.swept_tops import HELD, swept_top
 
 EACH = (Spread("a", "uniform", (1.0, 2.0)), Spread("b", "normal", (0.0, 2.0)),
         Spread("c", "loguniform", (1.0, 100.0)))  # fmt: skip
@@ -64,6 +64,15 @@ def test_what_makes_no_sense_is_refused_in_a_sentence(
         swept_top(tmp_path / "runs", **option)
     assert says in str(refused.value)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_rate_that_nobody_tells_begins_at_rest_and_a_warning_says_so(tmp_path: Path) -> None:
+    told = {n: x for n, x in HELD.items() if not n.endswith("_dot")}
+    own, usual = (swept_top(tmp_path / name, values=values, samples=20)
+                  for name, values in (("rest", told), ("usual", HELD)))  # fmt: skip
+    assert own.doubts[:2] == tuple(f"{name} is not told: members begin at rest in it"
+                                   for name in ("alpha_dot", "beta_dot"))  # fmt: skip
+    assert own.column("ended_at").tobytes() == usual.column("ended_at").tobytes()
 
 
 def test_without_the_extra_the_command_says_what_to_install(
