@@ -5,7 +5,7 @@ Where no compiler is, CasADi runs the scene's own file over all members: slower,
 
 import hashlib
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -127,10 +127,11 @@ def _ready(of: _ByContent) -> Ready:
 
 @dataclass(frozen=True)
 class ByCasadi:
-    """A scene's functions over members, by its CasADi file."""
+    """A scene's functions over members, by its CasADi file; each is built once."""
 
     library: Library
     module: ModuleType
+    built: dict[str, Any] = field(default_factory=dict)
 
     def setup(self, parameters: ByMember) -> tuple[ByMember, NDArray[np.int32]]:
         """Return the constants of every member, (constants, members), and what set-up says."""
@@ -150,8 +151,10 @@ class ByCasadi:
     ) -> Callable[[float], None]:
         """Return a call that takes the length of a step and fills ``found``."""
         program = self.library[function]
-        prepared = is_prepared(program)
-        called = getattr(self.module, f"{function}_hot" if prepared else function)()
+        builder = f"{function}_hot" if is_prepared(program) else function
+        if builder not in self.built:
+            self.built[builder] = getattr(self.module, builder)()
+        called = self.built[builder]
 
         def column(name: str, role: str, length: float) -> Any:
             if role == "constants":

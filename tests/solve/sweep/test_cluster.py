@@ -1,6 +1,7 @@
 """A sweep on a cluster: a real scheduler, and workers that die, come late or are slow."""
 
 import json
+import os
 import signal
 import subprocess
 import sys
@@ -14,6 +15,7 @@ import pytest
 import derive
 from derive.solve.sweep.store import parts_of
 from tests.solve.sweep.swept_tops import swept_top
+from tests.solve.sweep.test_sweep import same
 
 pytestmark = pytest.mark.long
 SLEPT = 3.0
@@ -27,17 +29,26 @@ class Cluster:
     file: Path
     processes: list[subprocess.Popen[bytes]] = field(default_factory=list)
 
-    def start(self, kind: str, *more: str) -> subprocess.Popen[bytes]:
+    def start(self, kind: str, *more: str, **also: str) -> subprocess.Popen[bytes]:
         command = [sys.executable, "-m", f"distributed.cli.dask_{kind}", "--no-dashboard"]
         own = subprocess.Popen(
             [*command, "--scheduler-file", str(self.file), *more],
             cwd=self.file.parent, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+            env=os.environ | also,
         )  # fmt: skip
         self.processes.append(own)
         return own
 
-    def worker(self) -> subprocess.Popen[bytes]:
-        return self.start("worker", "--no-nanny", "--nthreads", "1", "--host", "127.0.0.1")
+    def worker(self, **also: str) -> subprocess.Popen[bytes]:
+        own = ("--no-nanny", "--nthreads", "1", "--host", "127.0.0.1")
+        return self.start("worker", *own, **also)
+
+    def worker_without_compiler(self) -> subprocess.Popen[bytes]:
+        """Start a worker with nothing on its PATH, to which no wheel brings a compiler either."""
+        place = self.file.parent / "bare"
+        place.mkdir()
+        (place / "sitecustomize.py").write_text("import sys\nsys.modules['ziglang'] = None\n")
+        return self.worker(PATH=str(place), CC="", PYTHONPATH=str(place))
 
     @property
     def address(self) -> str:
@@ -104,6 +115,28 @@ def test_a_full_disk_ends_a_sweep_of_a_cluster_that_then_goes_on(
     assert len(parts_of(tmp_path / "there")) == 3
     found = swept_top(tmp_path / "there", scheduler=cluster.address)
     assert files(found) == files(swept_top(tmp_path / "here"))
+
+
+def test_a_worker_without_compiler_gives_the_same_bits_and_says_so(
+    cluster: Cluster, tmp_path: Path
+) -> None:
+    undisturbed = swept_top(tmp_path / "here")
+    says = "chunks were moved by CasADi: where they were is no compiler"
+    cluster.worker_without_compiler()
+    alone = swept_top(tmp_path / "alone", scheduler=cluster.address)
+    assert alone.doubts == (*undisturbed.doubts, f"6 {says}")
+    assert files(alone) == files(undisturbed)
+    cluster.worker()
+    seen: list[int] = []
+
+    def second_is_there(says: str, count: int, _of: int) -> None:
+        seen.append(count)
+        time.sleep(SLEPT if len(seen) == 2 else 0)
+
+    both = swept_top(tmp_path / "both", chunk=20, scheduler=cluster.address, told=second_is_there)
+    (told,) = (d for d in both.doubts if says in d)
+    assert 0 < int(told.split()[0]) < 30
+    assert same(both, undisturbed)
 
 
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:9", "127.0.0.1", "carrier://pigeon:8786"])
