@@ -24,7 +24,7 @@ from derive.verify.stated import figures
 METHOD = (
     *("program/added", "program/arithmetic", "program/own_sine", "program/pair_sine"),
     *("program/pairs",),
-    *("verify/columns", "verify/draw", "verify/hard_bodies", "verify/measure"),
+    *("verify/columns", "verify/draw", "verify/gains", "verify/hard_bodies", "verify/measure"),
     *("verify/operators", "verify/ratios", "verify/reference", "verify/sample", "verify/scale"),
     *("verify/search", "verify/solution", "verify/stated"),
 )

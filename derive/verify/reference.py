@@ -12,8 +12,9 @@ from flint import arb, arb_mat, ctx
 
 from derive.scene.formula import Arithmetic
 from derive.verify.equations import Equations
+from derive.verify.gains import gains
 from derive.verify.operators import IN_BALLS, Column
-from derive.verify.solution import Solved, gains, solution
+from derive.verify.solution import Solved, solution
 
 BITS = 300
 SPARE_BITS = 100  # a ball must be this much narrower than its largest product

@@ -19,10 +19,11 @@ from derive.program.program import Program, Quantity, component_names, placed
 from derive.scene.wanted import JACOBIAN
 from derive.verify.columns import Plan, arithmetics, doubles, in_columns, supplied
 from derive.verify.draw import Sampled
+from derive.verify.gains import gains
 from derive.verify.hard_bodies import BODIES
 from derive.verify.operators import IN_DOUBLES, Column
 from derive.verify.sample import Sample, Samples
-from derive.verify.solution import Solved, gains, solution
+from derive.verify.solution import Solved, solution
 
 ANGLES = "angles"
 STATE_RATE = "state_rate"

@@ -21,7 +21,7 @@ from derive.verify.operators import SLOPES
 from derive.verify.valuation import Atom, raised, value
 
 Slopes = dict[str, tuple[Any, Any]]
-Matrix = Sequence[Sequence[Any]]
+Square = Sequence[Sequence[Any]]
 NO_SCALES: Mapping[str, Any] = MappingProxyType({})
 ONE: Coefficient = (((), Fraction(1)),)
 
@@ -36,7 +36,7 @@ class Solved:
 
 
 @dataclass(frozen=True)
-class Solution:
+class SolvedEquations:
     """Equations solved: what each atom is by its place.
 
     coefficients : each with its size, None for one: nothing is multiplied by it
@@ -46,7 +46,7 @@ class Solution:
     equations: Equations
     known: Mapping[int, Solved]
     coefficients: Sequence[tuple[Any, Any]]
-    inverses: Sequence[Matrix]
+    inverses: Sequence[Square]
 
     def unknowns(self) -> dict[str, Solved]:
         """Return every unknown by its component's name."""
@@ -60,7 +60,7 @@ def solution(
     columns: Iterable[str],
     arithmetic: Arithmetic,
     scales: Mapping[str, Any] = NO_SCALES,
-) -> Solution:
+) -> SolvedEquations:
     """Return every unknown of equations, with its slopes by the ``columns``.
 
     scales : of what is given and was itself the sum of larger terms
@@ -69,7 +69,7 @@ def solution(
     _apply(equations, known, arithmetic)
     fixed = {place: known[place].value for place in equations.fixed}
     coefficients = [_coefficient(c, fixed, arithmetic) for c in equations.coefficients]
-    inverses: list[Matrix] = []
+    inverses: list[Square] = []
     for block, sign in zip(equations.blocks, equations.signs, strict=True):
         right = [_summed(s, known, coefficients, arithmetic) for s in block.right]
         if sign:
@@ -79,7 +79,7 @@ def solution(
         inverses.append(inverse)
         known |= dict(zip(block.unknowns, found, strict=True))
         _apply(equations, known, arithmetic)
-    return Solution(equations, known, coefficients, inverses)
+    return SolvedEquations(equations, known, coefficients, inverses)
 
 
 def _coefficient(
@@ -163,18 +163,14 @@ def _term(
     product, size = coefficients[part.coefficient]
     for atom, power in part.factors:
         factor = known[atom]
-        product = _times(product, raised(factor.value, power))
-        size = _times(size, _power_scale(factor, power, arithmetic))
-    return _or_one(product, size, arithmetic)
+        product = times(product, raised(factor.value, power))
+        size = times(size, _power_scale(factor, power, arithmetic))
+    return (arithmetic["number"](Fraction(1)), 1.0) if product is None else (product, size)
 
 
-def _times(one: Any, other: Any) -> Any:
+def times(one: Any, other: Any) -> Any:
     """Return a product; None is one."""
     return other if one is None else one * other
-
-
-def _or_one(product: Any, size: Any, arithmetic: Arithmetic) -> tuple[Any, Any]:
-    return (arithmetic["number"](Fraction(1)), 1.0) if product is None else (product, size)
 
 
 def _at_least(value: Any, scale: Any, arithmetic: Arithmetic) -> tuple[Any, Any]:
@@ -199,17 +195,17 @@ def _partial(
 ) -> tuple[Any, Any]:
     """Return a term's derivative by its factor at ``place``, and its size."""
     product, size = coefficients[part.coefficient]
-    for atom, times, left in _differentiated(part, place):
+    for atom, count, left in differentiated(part, place):
         factor = known[atom]
-        if times != 1:
-            product, size = _times(product, times), _times(size, float(abs(times)))
+        if count != 1:
+            product, size = times(product, count), times(size, float(abs(count)))
         if left:
-            product = _times(product, raised(factor.value, left))
-            size = _times(size, raised(factor.scale, left))
+            product = times(product, raised(factor.value, left))
+            size = times(size, raised(factor.scale, left))
     return product, size
 
 
-def _differentiated(part: Part, place: int) -> Iterator[tuple[int, int, int]]:
+def differentiated(part: Part, place: int) -> Iterator[tuple[int, int, int]]:
     """Yield of a term's derivative each atom, what it is multiplied by, and the power left."""
     for other, (atom, power) in enumerate(part.factors):
         yield (atom, power, power - 1) if other == place else (atom, 1, power)
@@ -220,7 +216,7 @@ def _add_slopes(
 ) -> None:
     """Add ``product`` times the slopes ``more``; a slope's scale is its largest product."""
     for column, (slope, scale) in more.items():
-        own, its = _times(product, slope), _times(size, scale)
+        own, its = times(product, slope), times(size, scale)
         if column in slopes:
             before, largest = slopes[column]
             slopes[column] = before + own, most(largest, its)
@@ -241,7 +237,7 @@ def _matrix(
     return [[replace(entry, scale=0.0) for entry in row] for row in rows]
 
 
-def _signed(sign: int, right: Solved) -> tuple[Matrix, list[Solved]]:
+def _signed(sign: int, right: Solved) -> tuple[Square, list[Solved]]:
     """Return the size of a matrix of 1 or -1 inverted, and the unknown that it stands before."""
     if sign > 0:
         return ((1.0,),), [right]
@@ -255,7 +251,7 @@ def _solved(
     known: Mapping[int, Solved],
     coefficients: Sequence[tuple[Any, Any]],
     arithmetic: Arithmetic,
-) -> tuple[Matrix, list[Solved]]:
+) -> tuple[Square, list[Solved]]:
     """Return the sizes of a block's inverse, its unknowns and their slopes: A u' = b' - A' u."""
     matrix = _matrix(block, known, coefficients, arithmetic)
     inverse = arithmetic["inverse"]([[entry.value for entry in row] for row in matrix])
@@ -282,8 +278,8 @@ def _load(
 
 def _through(
     matrix: Sequence[Sequence[Solved]],
-    inverse: Matrix,
-    inverse_sizes: Matrix,
+    inverse: Square,
+    inverse_sizes: Square,
     arithmetic: Arithmetic,
     right: Sequence[tuple[Any, Any]],
 ) -> list[tuple[Any, Any]]:
@@ -299,42 +295,3 @@ def _through(
     ]
     sizes = [reduce(most, (r[k] * rows[k] for k in order)) for r in inverse_sizes]
     return [_at_least(*solved, arithmetic) for solved in zip(values, sizes, strict=True)]
-
-
-def gains(
-    of: Solution, arithmetic: Arithmetic, ends: Callable[[Any], tuple[Any, Any]]
-) -> dict[str, Any]:
-    """Return how far an error of what each unknown is made of is magnified in it, at least 1.
-
-    ends : the smallest and the largest of sizes, where a bound for all samples is enough
-    """
-    found: dict[int, Any] = {}
-    most = arithmetic["most"]
-    scales = {place: ends(known.scale) for place, known in of.known.items()}
-    sizes = [None if s is None else ends(s)[1] for _, s in of.coefficients]
-    for block, inverse in zip(of.equations.blocks, of.inverses, strict=True):
-        right = [_gain(s, found, scales, sizes, most) for s in block.right]
-        for atom, row in zip(block.unknowns, inverse, strict=True):
-            each = (ends(x)[1] * r for x, r in zip(row, right, strict=True))
-            found[atom] = reduce(most, each, 1.0)
-    return {of.equations.names[atom]: gain for atom, gain in found.items()}
-
-
-def _gain(
-    parts: Sum,
-    found: Mapping[int, Any],
-    scales: Mapping[int, tuple[Any, Any]],
-    sizes: Sequence[Any],
-    most: Callable[[Any, Any], Any],
-) -> Any:
-    """Return the largest of what a sum magnifies its factors by, times what these have gained."""
-    gain: Any = 1.0
-    for part in parts:
-        for place, (atom, _) in enumerate(part.factors):
-            size = sizes[part.coefficient]
-            for other, times, left in _differentiated(part, place):
-                size = size if times == 1 else _times(size, float(abs(times)))
-                if left:
-                    size = _times(size, raised(scales[other][left > 0], left))
-            gain = most(gain, _times(size, found.get(atom, 1.0)))
-    return gain

@@ -19,7 +19,7 @@ PARTS = re.compile(r"([^0-9]*)([0-9]+|$)")
 
 
 @dataclass(frozen=True)
-class _Written:
+class _Writing:
     """How symbols are written, and what has been arranged: terms are sorted by how they read."""
 
     names: Names
@@ -28,16 +28,16 @@ class _Written:
 
 def symbolic_layout(expression: Expr, names: Names) -> Layout:
     """Return how ``expression`` is written; a symbol without a name keeps its own."""
-    return _layout(expression, _Written(names))
+    return _layout(expression, _Writing(names))
 
 
-def _layout(expression: Expr, by: _Written) -> Layout:
+def _layout(expression: Expr, by: _Writing) -> Layout:
     if expression not in by.layouts:
         by.layouts[expression] = _arranged(expression, by)
     return by.layouts[expression]
 
 
-def _arranged(expression: Expr, by: _Written) -> Layout:
+def _arranged(expression: Expr, by: _Writing) -> Layout:
     if isinstance(expression, Symbol):
         return name(by.names.get(expression, expression.name), "scalar")
     if isinstance(expression, Rational):
@@ -55,7 +55,7 @@ def _arranged(expression: Expr, by: _Written) -> Layout:
     raise NotationError(f"the notation reads sums, products, powers, {known}; not '{expression}'")
 
 
-def _sum(expression: Add, by: _Written) -> Layout:
+def _sum(expression: Add, by: _Writing) -> Layout:
     """Return the terms, short ones first, beginning with one that has no minus."""
     terms = sorted(expression.args, key=lambda term: _term_key(term, by))
     parts = [_layout(term, by) for term in terms]
@@ -63,7 +63,7 @@ def _sum(expression: Add, by: _Written) -> Layout:
     return added([parts[first], *parts[:first], *parts[first + 1 :]])
 
 
-def _term_key(term: Expr, by: _Written) -> tuple[int, list[Counted], Counted]:
+def _term_key(term: Expr, by: _Writing) -> tuple[int, list[Counted], Counted]:
     factors = [f for f in Mul.make_args(term) if not isinstance(f, Rational)]
     text = plain(_layout(term, by))
     return sum(map(_degree, factors)), sorted(counted(_first(f)) for f in factors), counted(text)
@@ -91,7 +91,7 @@ def _first(factor: Expr) -> str:
     return min((symbol.name for symbol in factor.free_symbols), default="")
 
 
-def _product(expression: Expr, by: _Written) -> Layout:
+def _product(expression: Expr, by: _Writing) -> Layout:
     """Return numbers, then symbols, then functions; what has a negative exponent stands below."""
     coefficient, rest = expression.as_coeff_Mul()
     above: list[Layout] = []
@@ -111,7 +111,7 @@ def _product(expression: Expr, by: _Written) -> Layout:
     return negative(whole) if value < 0 else whole
 
 
-def _factor_key(factor: Expr, by: _Written) -> tuple[bool, Counted, Counted]:
+def _factor_key(factor: Expr, by: _Writing) -> tuple[bool, Counted, Counted]:
     base, exponent = factor.as_base_exp()
     size = abs(exponent) if exponent.is_Rational else exponent
     text = plain(_power(base, size, by))
@@ -127,7 +127,7 @@ def _turned(factor: Expr) -> tuple[int, Expr, Expr]:
     return 1, base, exponent
 
 
-def _power(base: Expr, exponent: Expr, by: _Written) -> Layout:
+def _power(base: Expr, exponent: Expr, by: _Writing) -> Layout:
     inside = _layout(base, by)
     if exponent == 1:
         return inside

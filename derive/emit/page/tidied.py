@@ -14,7 +14,7 @@ from sympy.simplify.fu import TR6, TR10i
 
 from derive.lecture.turning import reduced
 
-Powers = tuple[Expr, Expr]  # a factor's base, and its exponent
+BaseAndPower = tuple[Expr, Expr]  # a factor's base, and its exponent
 KEPT = 10_000
 """Parts of equations of which it is remembered what became of them."""
 LONGEST = 45
@@ -71,7 +71,7 @@ def _adds_angles(value: Expr) -> bool:
 
     Looking for sums of angles takes long where there are none.
     """
-    alike: dict[frozenset[Powers], list[dict[Expr, Expr]]] = {}
+    alike: dict[frozenset[BaseAndPower], list[dict[Expr, Expr]]] = {}
     for term in value.args:
         powers = [f.as_base_exp() for f in Mul.make_args(term) if not f.is_number]
         waves = {base: power for base, power in powers if isinstance(base, (sin, cos))}
