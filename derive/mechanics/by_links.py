@@ -11,6 +11,7 @@ from sympy import Expr, Integer, Symbol
 from derive.mechanics.absolute_angles import absolute_angles, relative
 from derive.mechanics.articulated import articulated
 from derive.mechanics.articulated_plane import articulated_plane
+from derive.mechanics.beside import reactions
 from derive.mechanics.held_together import held_together
 from derive.mechanics.implied import Implied, by_passes, by_rows
 from derive.mechanics.links import Links
@@ -39,17 +40,22 @@ def by_links(
     problem = found.problem
     held = frozenset(s for e in problem.answers.values() for s in e.free_symbols)
     sought = held & frozenset(problem.unknowns)  # what else balances hold is a reaction
+    free = frozenset(sheet.symbols[m.unknown] for m in mechanism.scene.moving if m.free)
     ways: Iterator[tuple[str, OnTheWay, Implied | None]]
     long = False
     if mechanism.scene.constraints:
         ways = ((how, own, None) for how, own in held_together(mechanism, sought))
     else:
-        machine = links(mechanism.answers.frames, sought)
-        if machine is None or not machine.links:
+        moved = free if sought and not free.isdisjoint(problem.unknowns) else sought
+        machine = links(mechanism.answers.frames, moved)
+        beside = reactions(mechanism.answers.balances, moved, sought - moved)
+        if machine is None or not machine.links or beside is None:
             return
-        if sought not in (machine.free, machine.driving):
+        if moved not in (machine.free, machine.driving):
             return
-        ways, long = _solved(machine, sorted(sought, key=str)), _pairs(machine) > MOST_PAIRS
+        ways = ((how, {**own, **beside}, implied)
+                for how, own, implied in _solved(machine, sorted(moved, key=str)))  # fmt: skip
+        long = _pairs(machine) > MOST_PAIRS
     known = dict.fromkeys(mechanism.words.hidden, Integer(1)) | dict(found.taken)
     for how, own, implied in ways:
         more = implied.expressions() if implied else ()

@@ -10,7 +10,7 @@ from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field, replace
 
 from mpmath import mp
-from sympy import Integer, Matrix
+from sympy import Expr, Integer, Matrix
 
 from derive.lecture.stated import by_law
 from derive.mechanics.balance import ValuedBalance
@@ -58,13 +58,26 @@ def _carried(balances: Balances, frame: str) -> Iterator[str]:
 
 def write_out(balances: Balances, rows: Sequence[ValuedBalance], of: Outboard) -> None:
     """Write balances of outboard bodies out."""
-    passes = _Passes(balances, {frame: _held(of, frame) for frame in dict.fromkeys(of.values())})
+    for row, e in zip(rows, needed_by(balances, rows, held_beyond(of), of), strict=True):
+        balances.expressions[row] = balances.without_what_drops_out(row, e)
+
+
+def held_beyond(of: Outboard) -> Mapping[str, AbstractSet[int]]:
+    """Return which unknowns are in the balances of each frame; all others drop out."""
+    return {frame: _held(of, frame) for frame in dict.fromkeys(of.values())}
+
+
+def needed_by(
+    balances: Balances, rows: Sequence[ValuedBalance], held: Mapping[str, AbstractSet[int]],
+    of: Outboard,
+) -> Iterator[Expr]:  # fmt: skip
+    """Yield what balances of outboard bodies need, less what acts, where ``held`` is held."""
+    passes = _Passes(balances, held)
     for row in rows:
         needed, about = passes.needed(of[row])
         vector = needed if row.balance.point is None else about
         vector = balances.frames.carried(vector, of[row], row.balance.frame)
-        e = balances.frames.direction(row.balance.axis)
-        balances.expressions[row] = balances.without_what_drops_out(row, (e.T * vector)[0])
+        yield (balances.frames.direction(row.balance.axis).T * vector)[0]
 
 
 def _held(of: Outboard, frame: str) -> frozenset[int]:
