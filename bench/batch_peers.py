@@ -146,9 +146,15 @@ def by_heyoka() -> Way:
     names = heyoka.make_vars("w", "i", "j", "k", "p", "q", "r")
     w, i, j, k, p, q, r = names
     a, b, c = INERTIA
-    system = [(w, (-i * p - j * q - k * r) / 2), (i, (w * p + j * r - k * q) / 2),
-              (j, (w * q + k * p - i * r) / 2), (k, (w * r + i * q - j * p) / 2),
-              (p, (b - c) / a * q * r), (q, (c - a) / b * r * p), (r, (a - b) / c * p * q)]
+    system = [
+        (w, (-i * p - j * q - k * r) / 2),
+        (i, (w * p + j * r - k * q) / 2),
+        (j, (w * q + k * p - i * r) / 2),
+        (k, (w * r + i * q - j * p) / 2),
+        (p, (b - c) / a * q * r),
+        (q, (c - a) / b * r * p),
+        (r, (a - b) / c * p * q),
+    ]
     width = heyoka.recommended_simd_size()
 
     def way(tolerance: float) -> tuple[Any, float]:

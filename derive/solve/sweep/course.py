@@ -196,8 +196,8 @@ def _begun(lanes: Lanes, whole: Endings, refining: Refining) -> _BetweenSteps:
         lanes.on(-lanes.plan.seconds)
         before = lanes.residual()
         lanes.undo()
-    return _BetweenSteps(lanes, whole, refining, np.ones(len(lanes), bool), most, left, most, before,
-                     np.isfinite(left))  # fmt: skip
+    every = np.ones(len(lanes), bool)
+    return _BetweenSteps(lanes, whole, refining, every, most, left, most, before, np.isfinite(left))
 
 
 def _to_their_ends(lanes: Lanes, whole: Endings, refining: Refining) -> NDArray[np.int64]:

@@ -36,11 +36,18 @@ class Gap:
     """How far apart two lengths of step take members.
 
     worst : the largest error of a state        otherwise : how many end in another way, of ``many``
+    astray : those that become no numbers by both
     """
 
     worst: float
     otherwise: int
     many: int
+    astray: frozenset[int] = frozenset()
+
+    @property
+    def is_judged(self) -> bool:
+        """Tell whether enough members have an end by both: a shorter step may give it to others."""
+        return len(self.astray) + self.otherwise <= FEW * self.many
 
     def within(self, error: float) -> bool:
         """Tell whether no member is further off than an error, but for those few."""
@@ -109,8 +116,9 @@ def gap_between(plan: SweepPlan, states: Sequence[Quantity], one: Endings, fine:
         if k.how in EXTREMES and k.component in rows:
             off = np.abs(one.columns[k.column] - fine.columns[k.column]) / size[rows[k.component]]
             worst.append(float(np.max(off[np.isfinite(off) & ~differs], initial=0.0)))
-    lost = np.array([how == ASTRAY or how.startswith(REFUSED) for how in fine.ended])
-    return Gap(max(worst), int(differs.sum()), int((~lost).sum()))
+    many = sum(not how.startswith(REFUSED) for how in fine.ended)
+    astray = frozenset(np.flatnonzero((fine.ended == ASTRAY) & ~differs).tolist())
+    return Gap(max(worst), int(differs.sum()), many, astray)
 
 
 def _states(states: Sequence[Quantity], of: Endings) -> FloatColumn:

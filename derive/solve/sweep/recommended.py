@@ -7,7 +7,7 @@ it is stretched as far as the order seen allows. It must keep to the error at ot
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from math import ceil, isfinite, log2
+from math import ceil, inf, isfinite, log2
 from time import perf_counter
 
 from derive.emit.c.members import is_in_vectors
@@ -39,6 +39,8 @@ FINER = 4
 GAIN, PATIENCE, USELESS = 0.7, 3, 0.1
 """A finer step that leaves more of the gap than ``GAIN`` gains nothing; so often, it is the last.
 Above ``USELESS`` nothing is said of rounding."""
+PERSISTENT = 4
+"""Halves of a length after which members that become no numbers by all of them have no end."""
 STRETCHED = 1.02
 """More steps than the order seen says that the error needs."""
 ORDERS = (0.5, 30.0)
@@ -129,13 +131,18 @@ def _fewest(trial: _Mover, step: str, error: float, limit: int) -> tuple[int, fl
     limit : of steps of the shortest length
     """
     ends, gaps, count = dict[int, Endings](), list[float](), 1
+    lost: list[tuple[int, frozenset[int]]] = []
     while count <= limit and _gains(gaps):
         ends[count] = trial.moved(step, count)
         if count >= FINER:
             whole, half = (trial.gap(ends[n], ends[count]) for n in (count // FINER, count // 2))
-            gaps.append(max(whole.worst, half.worst))
-            if all(own.within(error / MARGIN) for own in (whole, half)):
+            gaps.append(max(whole.worst, half.worst) if whole.is_judged else inf)
+            keeps = all(own.within(error / MARGIN) for own in (whole, half))
+            if keeps and whole.is_judged:
                 return _stretched(trial, step, error, ends, count // FINER), gaps[-1]
+            lost = [*lost, (count // FINER, whole.astray)] if keeps else []
+            if len(lost) > PERSISTENT and len({own for _, own in lost[-PERSISTENT - 1 :]}) == 1:
+                return lost[-PERSISTENT - 1][0], whole.worst
             ends.pop(count // FINER // 2, None)
         count *= 2
     return 0, min(gaps, default=1.0)
@@ -198,6 +205,8 @@ def _tried(trial: _Mover, plan: SweepPlan, count: int, error: float) -> Verified
     says += f"{gap.worst:.1g} at most"
     if gap.otherwise:
         says += f"; {gap.otherwise} of them end otherwise by half of it"
+    if gap.astray:
+        says += f"; {len(gap.astray)} of them become no numbers, by shorter steps neither"
     return Verified(own, halved_columns(own, *half), spent, says)
 
 

@@ -172,6 +172,17 @@ def test_a_loop_is_closed_anew_with_the_lengths_of_each_member(cranks: derive.En
 
 
 @pytest.mark.long
+def test_a_loop_is_closed_with_the_same_bits_whoever_is_beside(
+    cranks: derive.Ensemble, tmp_path: Path
+) -> None:
+    own = handle(tmp_path, "slider_crank_guided", "step_rk4", "kinetic_energy").sweep(
+        LENGTHS, tmp_path / "runs", 0.2, ["a@end", "b"], CRANK | ROD, 500, step=0.01, workers=1,
+        instants=2, near=1, chunk=7,
+    )  # fmt: skip
+    assert same(own, cranks)
+
+
+@pytest.mark.long
 def test_a_loop_that_does_not_close_is_counted_and_kept(tmp_path: Path) -> None:
     held = {n: x for n, x in CRANK.items() if n != "a"}
     own = handle(tmp_path, "slider_crank_guided", "step_rk4").sweep(

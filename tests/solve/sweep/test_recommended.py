@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import derive
+from bench.sweep import examples
 from derive.report.reference import end_of
 from derive.solve.sweep import recommended
 from derive.solve.sweep.design import Design
@@ -110,3 +111,28 @@ def test_members_that_are_tried_are_from_all_places(spread: tuple[Spread, ...]) 
             assert {*each[0]}.isdisjoint(each[1])
             assert np.ptp(first["a"]) > 0.9 or samples < 100
             assert "g" not in first or np.ptp(first["g"]) > 0.9
+
+
+def test_members_that_all_become_no_numbers_by_a_length_do_not_speak_for_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (scenes, _) = examples()[-1]
+    (tmp_path / "damped.toml").write_text(scenes["damped.toml"], encoding="utf-8")
+    tumbling = derive.load(str(tmp_path / "damped.toml"))
+    vary = {"omega_x": "uniform(10, 20)", "omega_z": "uniform(10, 20)"}
+    held = {"I_xx": 1.4, "I_yy": 1.6, "I_zz": 1.8, "damp": 0.01, "omega_y": 5, "attitude_w": 1,
+            "attitude_x": 0, "attitude_y": 0, "attitude_z": 0}  # fmt: skip
+    told: Any = (200.0, ["omega_x@end"], held, 300)
+    assert tumbling.sweep(vary, tmp_path / "runs", *told, workers=1).ended == {"until": 300}
+    monkeypatch.setattr(Gap, "is_judged", True)
+    monkeypatch.setattr(recommended, "_gains", lambda _: True)
+    assert tumbling.sweep(vary, tmp_path / "fooled", *told, workers=1).ended == {"not finite": 300}
+
+
+def test_members_that_no_length_gives_an_end_are_told(tmp_path: Path) -> None:
+    values = HELD | {"alpha": 0.1, "m": 0.5, "n": 40}
+    del values["alpha_dot"]
+    vary = {"alpha_dot": "0..1e200:5"}
+    own = found(tmp_path / "runs", vary=vary, values=values, samples=1)
+    assert own.ended == {"not finite": 4, "until": 1}
+    assert own.says.endswith("4 of them become no numbers, by shorter steps neither")

@@ -1,19 +1,16 @@
 """Every block of docs/sweep.md runs, and gives what stands below it; so do its commands."""
 
 import doctest
-import re
-import shlex
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from bench.sweep import PAGE, examples
 from derive.cli import main
 from derive.solve.sweep.drawing import histogram
 from derive.solve.sweep.summary import _scatter
 from tests.solve.sweep.swept_tops import swept_top
-
-PAGE = Path(__file__).parents[3] / "docs" / "sweep.md"
 
 
 def test_the_examples_of_the_page_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -23,11 +20,12 @@ def test_the_examples_of_the_page_run(tmp_path: Path, monkeypatch: pytest.Monkey
     assert found.failed == 0
 
 
-def commands() -> list[list[str]]:
-    """Return what is behind ``derive`` in the commands of the page, with fewer samples."""
-    text = PAGE.read_text(encoding="utf-8").replace("\\\n", " ")
-    found = [shlex.split(c) for c in re.findall(r"^    derive (sweep .*)$", text, re.MULTILINE)]
-    return [[{"1e6": "1e3", "2e4": "2e3"}.get(word, word) for word in own] for own in found]
+def command(number: int) -> list[str]:
+    """Return what is behind ``derive`` in a command of the page, with fewer samples; its scene."""
+    scenes, words = examples()[number]
+    for name, text in scenes.items():
+        Path(name).write_text(text, encoding="utf-8")
+    return [{"1e6": "1e3", "2e4": "2e3"}.get(word, word) for word in words]
 
 
 @pytest.mark.parametrize(("told", "page"), [(".", "here.html"), ("runs.html", "runs.html.html")])
@@ -54,15 +52,13 @@ def test_a_column_that_hardly_scatters_or_beyond_measure_has_a_histogram(
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("number", range(2))
+@pytest.mark.parametrize("number", range(3))
 def test_the_commands_of_the_page_run_and_write_what_it_says(
     number: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    (scene,) = re.findall(r"```toml\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
-    Path("damped.toml").write_text(scene, encoding="utf-8")
-    assert len(commands()) == 2
-    own = commands()[number]
+    assert len(examples()) == 3
+    own = command(number)
     assert main(own) == 0
     folder = Path(own[-1])
     assert f"  {folder}\n  {folder.with_suffix('.html')}" in capsys.readouterr().out
