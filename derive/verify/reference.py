@@ -91,7 +91,7 @@ def references(
     wanted, by = tuple(columns), in_columns(arithmetic)
     found, left, bits = References({}, {}), np.arange(len(each)), BITS
     while bits <= MOST_BITS and len(left):
-        with ctx.workprec(bits):
+        with ctx.workprec(bits), np.errstate(all="ignore"):
             own = _at_samples(equations, [each[n] for n in left.tolist()], wanted, by)
             tight = reduce(np.logical_and, map(_tight, own.known.values()))
         if bits == BITS:

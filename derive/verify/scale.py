@@ -34,35 +34,43 @@ CHANGED = 2.0**-26
 NOTHING = 1e-60
 """A part this much smaller than the rest of a plan is what rounding left, and has no true value."""
 
+SLICE = 512
+"""Samples whose matrices are inverted at a time."""
 InDouble = Mapping[str, Column]
 
 
 def _inverse(rows: Sequence[Sequence[Any]]) -> list[list[Any]]:
     """Return the inverses of matrices, entry by entry: Gauss and Jordan, pivots by sample."""
     n = len(rows)
-    count = np.broadcast_shapes(*(np.shape(x) for row in rows for x in row))
-    m = np.zeros((n, 2 * n, *count))
-    for i, row in enumerate(rows):
-        m[i, n + i] = 1.0
-        for k, x in enumerate(row):
-            m[i, k] = x
+    flat = np.broadcast_arrays(*(np.asarray(x, np.float64) for row in rows for x in row))
+    whole = np.reshape(flat, (n, n, *flat[0].shape))
+    if whole.ndim == 2:
+        return [list(row) for row in _inverted(whole[..., None])[..., 0]]
+    parts = [_inverted(whole[..., k : k + SLICE]) for k in range(0, whole.shape[-1], SLICE)]
+    return [list(row) for row in np.concatenate([whole[..., :0], *parts], axis=-1)]
+
+
+def _inverted(matrix: Column) -> Column:
+    """Return the inverses of matrices, (n, n, samples), so few that they stay in the cache."""
+    n, count = matrix.shape[1:]
+    m = np.zeros((n, 2 * n, count))
+    m[:, :n] = matrix
+    m[range(n), range(n, 2 * n)] = 1.0
     for i in range(n):
         _pivoted(m, i)
         m[i] = m[i] / m[i, i]
         for k in range(n):
             if k != i:
-                m[k] = m[k] - m[k, i] * m[i]
-    return [list(row) for row in m[:, n:]]
+                m[k, i + 1 :] -= m[k, i] * m[i, i + 1 :]  # before it, nobody reads on
+    return m[:, n:]
 
 
 def _pivoted(m: Column, i: int) -> None:
     """Bring the largest entry of column ``i``, from row ``i`` on, to row ``i``."""
     best = np.argmax(np.abs(m[i:, i]), axis=0)
-    for k in range(1, m.shape[0] - i):
+    for k in np.unique(best[best > 0]):
         here = best == k
-        upper, lower = m[i].copy(), m[i + k]
-        m[i] = np.where(here, lower, upper)
-        m[i + k] = np.where(here, upper, lower)
+        m[i, :, here], m[i + k, :, here] = m[i + k, :, here], m[i, :, here]
 
 
 DOUBLES: dict[str, Callable[..., Any]] = {

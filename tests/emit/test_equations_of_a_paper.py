@@ -2,14 +2,16 @@
 
 import re
 from pathlib import Path
+from random import Random
 
 import pytest
 import sympy
+from sympy.simplify.fu import TR10i
 
 from derive.emit.equations import equations
 from derive.emit.equations.account import account
 from derive.emit.equations.assumed import ALONE, alone
-from derive.emit.page.tidied import neatened
+from derive.emit.page.tidied import _adds_angles, neatened
 from derive.lecture.chapters import LECTURE
 from derive.library.library import library
 from derive.scene import parse_scene
@@ -101,3 +103,23 @@ def test_short_equations_stand_on_one_line_of_latex() -> None:
 def test_an_energy_is_in_joule() -> None:
     (result,) = (r for r in library_of("rolling_disc").scene.results if r.name == "energy_of_all")
     assert result.unit == "J"
+
+
+ANGLES = sympy.symbols("a b c", real=True)
+FACTORS = [*map(sympy.sin, ANGLES), *map(sympy.cos, ANGLES), sympy.sin(sum(ANGLES)), *ANGLES[:2]]
+
+
+def test_no_sum_of_angles_is_missed_by_who_looks_only_where_two_terms_may_be_one() -> None:
+    dice, found = Random(3), 0
+    for _ in range(400):
+        terms = [
+            dice.choice((-1, 1, 2)) * sympy.Mul(*dice.choices(FACTORS, k=dice.randint(1, 3)))
+            for _ in range(dice.randint(2, 5))
+        ]
+        whole = sympy.Add(*terms)
+        looked = any(map(_adds_angles, whole.atoms(sympy.Add)))
+        assert looked or TR10i(whole) == whole
+        found += not looked
+    assert 100 < found < 400
+    a, b, _ = ANGLES
+    assert _adds_angles(sympy.sin(a) * sympy.cos(b) - sympy.cos(a) * sympy.sin(b))

@@ -6,10 +6,11 @@ import pytest
 from sympy import Symbol
 
 from derive.emit.c.relations import MOST, every_relation
+from derive.emit.equations import section as sections
 from derive.emit.equations.section import Paragraph, Section, section
 from derive.emit.files import scene_files
 from derive.emit.page.equation import written_equations
-from derive.emit.page.glance import short_forms
+from derive.emit.page.glance import at_a_glance, short_forms
 from derive.library.library import Library
 from derive.program.precision import F64
 from derive.program.program import Program
@@ -102,3 +103,14 @@ def test_what_readers_are_told_of_a_function_is_made_once_a_machine() -> None:
     plain = one.mechanism.body_by_body
     mine, other = (written_equations(m, "state_rate") for m in (one.mechanism, plain))
     assert mine is not other
+
+
+def test_a_function_of_many_lines_states_the_sum_that_it_is_and_its_laws(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(sections, "LONG", 0)
+    library = library_of("cart_pendulum")
+    assert not any(every_relation(library).values())
+    (whole, *laws) = at_a_glance(library, "energy")
+    assert laws
+    assert all(f"<mi>{letter}</mi>" in whole for letter in "TV")

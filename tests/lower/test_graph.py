@@ -2,10 +2,17 @@
 
 from fractions import Fraction
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from derive.lower.expand import collected_by_factors, factored, grouped, multiplied_out
+from derive.lower.expand import (
+    TooManyTermsError,
+    collected_by_factors,
+    factored,
+    grouped,
+    multiplied_out,
+)
 from derive.lower.graph import ONE, ZERO, Graph, Value
 from derive.lower.schedule import schedule
 from derive.program.arithmetic import EXACT
@@ -104,6 +111,14 @@ def test_a_let_is_looked_through_and_a_cut_is_not():
     through = multiplied_out(g, [g.mul([x, g.let("a", total)])], frozenset())[0]
     stopped = multiplied_out(g, [g.mul([x, g.cut("b", total)])], frozenset())[0]
     assert (len(through), len(stopped)) == (2, 1)
+
+
+def test_multiplying_out_ends_where_a_part_has_more_terms_than_asked_for():
+    g, leaves = graph_with_leaves()
+    square = g.power(g.let("a", g.add([leaves["x"], leaves["y"]])), 2)
+    assert len(multiplied_out(g, [square], frozenset(), 3)[0]) == 3
+    with pytest.raises(TooManyTermsError):
+        multiplied_out(g, [square], frozenset(), 2)
 
 
 def test_a_pair_that_several_sums_share_is_added_once():

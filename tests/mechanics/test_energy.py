@@ -7,12 +7,16 @@ from typing import Any, cast
 
 import pytest
 
+from bench.chains import chain
 from derive.check.energy import emitted_balance, energy_balance
 from derive.library.library import Library, library
 from derive.mechanics import loads
+from derive.mechanics.mechanism import mechanism
 from derive.program.precision import F64
 from derive.scene import SceneError, catalogue, load, parse_scene
 from derive.verify.cloud import balance
+from derive.verify.equations import equations_of
+from derive.verify.reference import reference
 from derive.verify.sample import Sample, samples
 from tests.check.mutants import first_sign_flipped
 from tests.check.replayed import Replayed
@@ -178,3 +182,20 @@ def test_a_momentum_about_a_point_that_is_nowhere_is_refused() -> None:
     text += '[angular_momentum]\nframe = "inertial"\n'
     with pytest.raises(SceneError, match="the origin of frame 'disc' is needed as a place"):
         library(parse_scene(text, "disc"))
+
+
+def test_weights_up_a_long_chain_have_the_energy_of_places_carried_up_and_few_terms(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    text = chain("yxy" * 2).replace('"accelerations"', '"potential_energy"')
+    values: list[float] = []
+    terms: list[int] = []
+    for few in (loads.FEW, 6):
+        monkeypatch.setattr(loads, "FEW", few)
+        known = mechanism(parse_scene(text, "chain"))
+        equations = equations_of(known, known.problem("potential_energy"))
+        at = samples(known, F64, 1, 0).each[0].values
+        values.append(float(reference(equations, at, ())["potential_energy"].value))
+        terms.append(sum(len(s) for b in equations.blocks for s in b.right))
+    assert values[0] == pytest.approx(values[1], rel=1e-12)
+    assert terms[0] < 80

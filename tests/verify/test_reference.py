@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from functools import cache
 from typing import Any
 
+import numpy as np
 import pytest
 import sympy
 from flint import arb, ctx
@@ -13,9 +14,12 @@ from derive.mechanics.problem import Problem
 from derive.program.precision import F64
 from derive.scene import catalogue, load
 from derive.scene.wanted import ATTITUDES, JACOBIAN, moves
+from derive.verify import reference as own_module
 from derive.verify.equations import equations_of
-from derive.verify.reference import BALLS, reference
+from derive.verify.gains import gains
+from derive.verify.reference import BALLS, NoValueError, in_columns, reference, references
 from derive.verify.sample import Sample, samples
+from derive.verify.scale import DOUBLES, _ends
 from derive.verify.solution import solution
 from tests.made import thinned
 
@@ -134,3 +138,58 @@ def test_an_exact_zero_is_told_from_a_tiny_number() -> None:
 def test_equations_without_a_solution_are_refused() -> None:
     with pytest.raises(ArithmeticError, match="no solution that 10000 bits can tell"):
         found("free_body_principal", "acceleration", {"I_xx": 0.0})
+
+
+TOGETHER = 3
+
+
+@pytest.mark.parametrize("few", [110, 300])
+def test_samples_that_are_solved_together_are_what_each_is_alone(
+    few: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    known = scene("acrobot")
+    equations = equations_of(known, known.problem("state_rate"))
+    columns = ["q_1", "q_2"]
+    each = [s.values for s in samples(known, F64, TOGETHER, 0).each]
+    alone = [reference(equations, at, columns) for at in each]
+    monkeypatch.setattr(own_module, "BITS", few)  # of 110, some need more
+    found = references(equations, each, columns)
+    for name, at in found.known.items():
+        for n, one in enumerate(alone):
+            assert abs(at.value[n] - one[name].value) < arb(2) ** -90 * arb(one[name].scale)
+            assert at.scale[n] == pytest.approx(one[name].scale)
+            assert {c: float(v[n]) for c, (v, _) in at.slopes.items()} == {
+                c: float(v) for c, (v, _) in one[name].slopes.items()
+            }
+
+
+def test_a_sample_without_a_value_is_told_beside_others_that_have_one() -> None:
+    known = scene("heavy_top")
+    equations = equations_of(known, known.problem("state_rate"))
+    values = ordinary(known).values
+    gone = values | dict.fromkeys((c for c in values if c == "theta"), 0.0)
+    assert references(equations, [values], ()).known
+    with pytest.raises(NoValueError):
+        references(equations, [values, gone], ())
+
+
+def test_what_all_samples_magnify_at_most_bounds_what_each_does() -> None:
+    known = scene("heavy_top")
+    equations = equations_of(known, known.problem("state_rate"))
+    each = samples(known, F64, 20, 0).each
+    given = {c: np.array([s.values[c] for s in each]) for c in each[0].values}
+    solved = solution(equations, given, (), DOUBLES)
+    most = gains(solved, DOUBLES, _ends)
+    own = gains(solved, DOUBLES, lambda size: (size, size))
+    balls = references(equations, [s.values for s in each], ())
+    assert any(np.max(own[name]) > 1 for name in own)
+    for name, gain in own.items():
+        assert np.max(gain) <= most[name]
+        assert np.broadcast_to(gain, len(each)) == pytest.approx(balls.gains[name])
+
+
+def test_balls_of_one_sample_go_into_no_column_of_another() -> None:
+    by = in_columns(BALLS)
+    inverse = by["inverse"]([[np.array([arb(1), arb(0)]), arb(0)], [arb(0), arb(2)]])
+    assert float(inverse[0][0][0]) == 1
+    assert not inverse[0][0][1].is_finite()

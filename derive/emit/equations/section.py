@@ -158,15 +158,20 @@ def section(library: Library, base: str) -> Section:
 
 
 def _section(library: Library, base: str) -> Section:
+    first = outline(library, base)
+    every = [replace(part, equations=tuple(resolved(library, base).items()))
+             if part.kind == "solution" else part for part in first.parts]  # fmt: skip
+    kept = {*first.called, *first.answers}
+    return of_parts(library, base, tuple(_defined_once(tuple(_fitted(every, first.called)), kept)))
+
+
+def of_parts(library: Library, base: str, parts: tuple[Paragraph, ...]) -> Section:
+    """Return a section of paragraphs of a function."""
     known, first = library.mechanism, outline(library, base)
     own = known.posed(base)
     symbols, label = own.words.sheet.symbols, own.words.sheet.label
     spoken = [*own.vocabulary.every(), *own.words.vocabulary.every()]
     of_scene = {symbols[c] for q in spoken for c in q.components} | first.found
-    every = [replace(part, equations=tuple(resolved(library, base).items()))
-             if part.kind == "solution" else part for part in first.parts]  # fmt: skip
-    parts = tuple(_defined_once(tuple(_fitted(every, first.called)),
-                                {*first.called, *first.answers}))  # fmt: skip
     return Section(
         base,
         known.whole(base).says,

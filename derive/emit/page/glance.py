@@ -1,12 +1,13 @@
 """What a function answers, at a glance: the closed forms of a terminal, where these are short."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 from sympy import Symbol
 
 from derive.emit.equations.fitted import TwoSides
 from derive.emit.equations.naming import Book, with_names
-from derive.emit.equations.section import Outline, Paragraph, Section, outline, section
+from derive.emit.equations.section import Paragraph, Section, of_parts, outline, section
 from derive.emit.notation import equation_mathml, sympy_equation_mathml
 from derive.emit.page.equation import is_short
 from derive.library.library import Library
@@ -21,26 +22,27 @@ def at_a_glance(library: Library, base: str) -> list[str]:
     An answer that is given or zero says nothing; what it is made of stands before it.
     """
     first = outline(library, base)
-    if first.is_long:
-        return [*_sums(_answers(first), first.called), *_laws(first.parts)]
-    one = with_names(section(library, base), Book())
-    shown = short_forms(one, MOST)
+    one = with_names(_answers(library, base) if first.is_long else section(library, base), Book())
+    shown = [] if first.is_long else short_forms(one, MOST)
     if shown:
         return [sympy_equation_mathml(left, right, one.names) for left, right in shown]
+    return [*_sums(one), *_laws(first.parts if first.is_long else one.parts)]
+
+
+def _answers(library: Library, base: str) -> Section:
+    """Return the lines of answers alone, as they are first written."""
+    first = outline(library, base)
+    own = (replace(part, equations=tuple(e for e in part.equations if e[0] in first.answers))
+           for part in first.parts)  # fmt: skip
+    return of_parts(library, base, tuple(part for part in own if part.equations))
+
+
+def _sums(one: Section) -> list[str]:
+    """Return the lines of answers that are sums of others."""
     defined = _defined(one)
     ends = [defined[s] for s in one.answers.values() if s in defined]
-    return [*_sums(ends, one.names), *_laws(one.parts)]
-
-
-def _answers(of: Outline) -> list[TwoSides]:
-    """Return the lines of answers as they are first written."""
-    return [e for part in of.parts for e in part.equations if e[0] in of.answers]
-
-
-def _sums(ends: Iterable[TwoSides], names: Mapping[Symbol, str]) -> list[str]:
-    """Return the lines of answers that are sums of others."""
     every = (e for e in ends if e[1].is_Add and all(term.is_Symbol for term in e[1].args))
-    return [sympy_equation_mathml(*e, names) for e in every]
+    return [sympy_equation_mathml(*e, one.names) for e in every]
 
 
 def _laws(parts: Sequence[Paragraph]) -> list[str]:
