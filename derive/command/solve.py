@@ -11,6 +11,7 @@ import derive
 from derive.command.parsed import location, seconds, typed
 from derive.command.terminal import complain, console, print_rows
 from derive.solve.handle import STEP
+from derive.solve.onto_constraints import fulfilling
 
 Printed = tuple[str, str, str, str]
 """What, where from, its value and its unit."""
@@ -88,16 +89,17 @@ def _print_quantities(scene: derive.Handle, needed: AbstractSet[str]) -> None:
     lasting = scene.scene.steady
     each = [lasting[name].unknown for name in scene.wanted if name in lasting]
     found = {n for unknown in each for n in unknown}
-    values = []
+    values: dict[str, str] = {}
     for name in (name for name in own if name in needed | found):
         q = own[name]
         low, high = (0.0 if end is None else float(end) for end in (q.low, q.high))
         says = f"{q.meaning}; found if it is not set" if name in found else q.meaning
         table.add_row(name, f"{low:g}", f"{high:g}", "" if q.unit == "1" else q.unit, says)
         if not each or name not in each[0]:  # others that are sought, one of which rests on it
-            values.append(f"{name}={example(low, high, name if q.is_quaternion else '')}")
+            values[name] = example(low, high, name if q.is_quaternion else "")
     print_rows(table)
-    command = ["derive", "solve", scene.source, "--set", *values]
+    each_set = (f"{name}={x}" for name, x in fulfilling(scene.library, values).items())
+    command = ["derive", "solve", scene.source, "--set", *each_set]
     console.print(f"\nfor example: {shlex.join(command)}", highlight=False, soft_wrap=True)
 
 

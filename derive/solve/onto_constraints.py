@@ -6,12 +6,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from derive.library.library import Library
 from derive.scene import SceneError
 from derive.scene.unit import behind
 from derive.solve.instrument import Instrument
 
 TYPED = 1e-3
 """A part of its range by which a value of the start may be rounded, or measured."""
+ROUNDED = 1e-12
+"""A part of its range that a value of an example is not written out for."""
 KEPT = 1e-6
 """A part of its range by which nobody minds that a value is mended."""
 
@@ -48,6 +51,19 @@ def start_on_constraints(
         if part > KEPT
     ]
     return dict(given) | {n: float(there[names.index(n)]) for n in moved}, doubts
+
+
+def fulfilling(library: Library, given: Mapping[str, str]) -> dict[str, str]:
+    """Return values as text, those of a state that does not fulfil the constraints changed so."""
+    brings = library.mechanism.held.onto
+    names = [c for q in library.vocabulary.given() for c in q.components]
+    if brings is None or not {n for n, _, _ in _free_in_time(brings, names)} <= given.keys():
+        return dict(given)
+    here = _values_given(brings, names, given)
+    (there,), (fits,) = brings.brought(here[None, :])
+    moved = [n for n, k, size in _free_in_time(brings, names)
+             if fits and abs(there[k] - here[k]) > ROUNDED * size]  # fmt: skip
+    return dict(given) | {n: f"{there[names.index(n)]:.9g}" for n in moved}
 
 
 def left_of_constraints(
