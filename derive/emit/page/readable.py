@@ -7,7 +7,7 @@ between is put in where it is short; elsewhere it has a line of its own.
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from sympy import Add, Expr, Symbol, cos, sin
+from sympy import Add, Expr, Symbol, cos, preorder_traversal, sin
 
 from derive.lecture.turning import reduced
 from derive.lower.arrange.matching import matched
@@ -106,9 +106,19 @@ def _read(named: dict[Symbol, Expr], ends: Iterable[Expr]) -> dict[Symbol, Expr]
 
 def _plainer(value: Expr) -> Expr:
     """Return a value as it is, or multiplied out with sin^2 = 1 - cos^2 if that is shorter."""
-    if not value.has(sin, cos) or value.count_ops() > 4 * LONGEST:
+    if not value.has(sin, cos) or _is_flat(value) or value.count_ops() > 4 * LONGEST:
         return value
     return min(value, reduced(value), key=lambda e: e.count_ops())
+
+
+def _is_flat(value: Expr) -> bool:
+    """Tell whether nothing in a value can be multiplied out, and no sine is squared."""
+    return not any(
+        any(f.is_Add for f in e.args)
+        if e.is_Mul
+        else e.is_Pow and (e.base.is_Add or e.base.func is sin)
+        for e in preorder_traversal(value)
+    )
 
 
 def _balanced(
