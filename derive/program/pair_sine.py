@@ -30,7 +30,7 @@ TERMS = {24: 8, 53: 14}
 KEPT, FEW = 32, 1 << 14
 """Angles whose sums are remembered: a cosine asked for after the sine is made of the same. Of no
 more samples than so many, lest they fill the memory."""
-Parts = tuple[Any, Pair, Pair]  # quarter turns, and the cosine and the sine of what is left
+SplitAngle = tuple[Any, Pair, Pair]  # quarter turns, and the cosine and the sine of what is left
 
 
 def coefficients(bits: int, first: int) -> list[Fraction]:
@@ -64,7 +64,7 @@ def pair_sine(dtype: type, rounded: Callable[[Fraction], Any]) -> Callable[[Pair
          for h, c in zip(high, reversed(coefficients(bits, start)), strict=True)]
         for start, high in enumerate(highs)
     ]  # fmt: skip
-    kept: dict[int, tuple[Pair, Parts]] = {}
+    kept: dict[int, tuple[Pair, SplitAngle]] = {}
 
     def summed(square: Pair, start: int) -> Pair:
         total = (square[0] * 0, square[0] * 0)
@@ -72,7 +72,7 @@ def pair_sine(dtype: type, rounded: Callable[[Fraction], Any]) -> Callable[[Pair
             total = pair_add(pair_mul(total, square, factor), own)
         return total
 
-    def parts(a: Pair) -> Parts:
+    def parts(a: Pair) -> SplitAngle:
         k = np.floor(per_quarter * a[0] + dtype(0.5))
         r = pair_add(a, pair_minus(two_product(k, first, factor)))
         r = pair_add(r, pair_minus(two_product(k, second, factor)))
@@ -80,7 +80,7 @@ def pair_sine(dtype: type, rounded: Callable[[Fraction], Any]) -> Callable[[Pair
         square = pair_mul(r, r, factor)
         return k, summed(square, 0), pair_mul(summed(square, 1), r, factor)
 
-    def remembered(a: Pair) -> Parts:
+    def remembered(a: Pair) -> SplitAngle:
         own = kept.get(id(a))
         if own is None or own[0] is not a:
             own = a, parts(a)
