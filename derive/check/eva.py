@@ -23,16 +23,25 @@ import numpy as np
 from derive.check.compiler import answer_of
 from derive.check.stand_in import between, trial_of_sines, trials_of_pairs, with_bounds
 from derive.check.target.harness import all_of, numbers_in
+from derive.check.told import escaped, with_ranges
 from derive.check.verdict import Outcome, Verdict
 from derive.emit.c.signature import CNames
 from derive.emit.c.source import c_files
 from derive.emit.sines import TOGETHER
 from derive.library.library import Library
-from derive.program.precision import PRECISIONS, Precision
+from derive.program.precision import F32, PRECISIONS, Precision
 from derive.program.program import Program
 from derive.scene.declaration import DeriveError
 from derive.verify.proved.bounds import ends_in_floats
-from derive.verify.proved.regular import PairOperation, Sector, pair_operations, sectors
+from derive.verify.proved.divisors import Divisor, divisors
+from derive.verify.proved.regular import (
+    FloatRanges,
+    PairOperation,
+    Sector,
+    pair_operations,
+    sectors,
+    whole_sectors,
+)
 from derive.verify.proved.sphere import UNIT
 
 TOOL = "frama-c"
@@ -61,60 +70,111 @@ def shown_by_eva(library: Library, sources: Mapping[str, str] | None = None) -> 
         folder = Path(place)
         for name, text in texts.items():
             (folder / name).write_text(with_bounds(text), encoding="utf-8")
+        proved = dict[str, tuple[Divisor, ...]]()
         for precision in PRECISIONS:
-            of = Analysis(library, precision, folder)
+            of = Analysis(library, precision, folder, proved)
             text = texts[CNames(library.scene.name).file(precision, "c")]
             yield from of.judged(TOGETHER, trial_of_sines(text, precision))
             on_pairs = set[PairOperation]()
             for program in all_of(library):
                 cut = cut_into_parts(library, program, precision)
-                if isinstance(cut, str):
-                    yield Verdict(*of.head(program.name), "skipped", cut)
-                    continue
-                on_pairs |= pair_operations(library, _hot(library, program), cut, precision)
-                called = entered(library, program, precision, cut)
-                yield from of.judged(program.name, called, len(cut))
+                if not isinstance(cut, str):
+                    on_pairs |= pair_operations(library, _hot(library, program), cut, precision)
+                yield of.verdict(program, cut)
             for name, trial in trials_of_pairs(text, on_pairs, precision).items():
                 yield from of.judged(name, trial)
 
 
 @dataclass(frozen=True)
 class Analysis:
-    """Where C of a scene is shown to Eva."""
+    """Where C of a scene is shown to Eva, and what is proved of functions so far, by name."""
 
     library: Library
     precision: Precision
     folder: Path
+    proved: dict[str, tuple[Divisor, ...]]
 
     def head(self, name: str) -> tuple[str, str, str, str]:
         """Return of what a verdict is."""
         return self.library.scene.name, name, self.precision.name, CHECK
 
-    def judged(self, name: str, text: str, parts: int = 1) -> Iterator[Verdict]:
+    def judged(self, name: str, text: str) -> Iterator[Verdict]:
         """Yield what Eva says of C, nothing of none."""
         if text:
-            source = self.folder / f"{name.replace(' ', '_')}_{self.precision.name}.eva.c"
-            source.write_text(text, encoding="utf-8")
-            said = answer_of((TOOL, *OPTIONS, str(source)), self.folder)
-            yield Verdict(*self.head(name), *_judged(said, parts))
+            yield Verdict(*self.head(name), *_judged(self.said(name, text)))
+
+    def said(self, name: str, text: str) -> str:
+        """Return Eva's words on C."""
+        source = self.folder / f"{name.replace(' ', '_')}_{self.precision.name}.eva.c"
+        source.write_text(text, encoding="utf-8")
+        return answer_of((TOOL, *OPTIONS, str(source)), self.folder)
+
+    def verdict(self, program: Program, cut: Sequence[Sector] | str) -> Verdict:
+        """Return what Eva says of a function, by itself or with divisors that are proved."""
+        head, alone = (
+            self.head(program.name),
+            Verdict(*self.head(program.name), "skipped", str(cut)),
+        )
+        if not isinstance(cut, str):
+            text = entered(self.library, program, self.precision, cut)
+            alone = Verdict(*head, *_judged(self.said(program.name, text), len(cut)))
+        ranges = () if alone.outcome != "skipped" else self.divisors(program)
+        if not ranges:
+            return alone
+        if says := escaped(self.library, _hot(self.library, program), ranges, self.precision):
+            return Verdict(*head, "FAILS", says)
+        parts = cases_of(self.library, program, self.precision)
+        own = _hot(self.library, program)
+        whole = whole_sectors(self.library, own, parts, self.precision)
+        names = CNames(self.library.scene.name)
+        source = names.file(self.precision, "c")
+        told, symbol = f"told_{program.name}_{source}", names.symbol(program.name, self.precision)
+        plain_text = (self.folder / source).read_text(encoding="utf-8")
+        (self.folder / told).write_text(with_ranges(plain_text, symbol, ranges), encoding="utf-8")
+        text = entered(self.library, program, self.precision, whole)
+        said = self.said(program.name, text.replace(f'"{source}"', f'"{told}"'))
+        outcome, says = _judged(said, len(whole))
+        taken = ", ".join(f"{d.name} in {d.low:.3g} .. {d.high:.3g}" for d in ranges)
+        return Verdict(*head, outcome, f"{says}, given what derive proves, not Eva: {taken}")
+
+    def divisors(self, program: Program) -> tuple[Divisor, ...]:
+        """Return the divisors of a function that are proved: in float, and so in double too."""
+        every, own = _given(self.library, program, F32), _hot(self.library, program)
+        if own.name not in self.proved and not isinstance(every, str):
+            self.proved[own.name] = divisors(self.library, own, every, F32)
+        return self.proved.get(own.name, ())
 
 
 def cut_into_parts(
     library: Library, program: Program, precision: Precision
 ) -> Sequence[Sector] | str:
     """Return parts of the ranges of a function, or why there are none."""
-    own = [q for q in program.inputs if q.role != "constants"]
-    if q := next((q for q in own if q.low is None and q.role == "plan"), None):
-        return f"{q.name} has no range"
-    each = (*library.setup.inputs, *own)
-    quantities = {c: q for q in each for c in q.components}
-    every = {c: ends_in_floats(quantities, c, precision) for c in quantities}
-    whole = [q.components for q in own if q.is_quaternion]
-    cases = [reduce(or_, case, every) for case in product(*map(_attitudes, whole))]
+    every = _given(library, program, precision)
+    if isinstance(every, str):
+        return every
+    cases = cases_of(library, program, precision)
     return (
         sectors(library, _hot(library, program), cases, precision)
         or "what it divides by may vanish, for all that is seen"
     )
+
+
+def _given(library: Library, program: Program, precision: Precision) -> FloatRanges | str:
+    """Return the ranges of all that a function is given, by component, or what has none."""
+    own = [q for q in program.inputs if q.role != "constants"]
+    if q := next((q for q in own if q.low is None and q.role == "plan"), None):
+        return f"{q.name} has no range"
+    quantities = {c: q for q in (*library.setup.inputs, *own) for c in q.components}
+    return {c: ends_in_floats(quantities, c, precision) for c in quantities}
+
+
+def cases_of(library: Library, program: Program, precision: Precision) -> list[FloatRanges]:
+    """Return ranges of all that a function is given that hold all, cut where quaternions are."""
+    every = _given(library, program, precision)
+    if isinstance(every, str):
+        return []
+    whole = [q.components for q in program.inputs if q.is_quaternion]
+    return [{**every, **reduce(or_, case, {})} for case in product(*map(_attitudes, whole))]
 
 
 def _hot(library: Library, program: Program) -> Program:

@@ -32,8 +32,9 @@ METHOD = (
 PROVING = (
     *("program/arithmetic", "program/own_sine", "program/pair_sine", "program/pairs"),
     *("verify/columns", "verify/draw", "verify/scale"),
-    *(f"verify/proved/{name}" for name in ("bounds", "cut", "enclosed", "ranges", "traits")),
-    *(f"verify/proved/{name}" for name in ("seen", "slopes", "sphere", "unfolded")),
+    *(f"verify/proved/{name}" for name in ("bounds", "cut", "enclosed", "forms", "lengths")),
+    *(f"verify/proved/{name}" for name in ("meant", "multiples", "ranges", "seen", "slopes")),
+    *(f"verify/proved/{name}" for name in ("sphere", "traits", "unfolded", "waist")),
 )
 """The modules that bounds are proved by, and seen beside."""
 

@@ -21,7 +21,7 @@ from derive.scene import catalogue
 from derive.verify.draw import with_motion
 from derive.verify.kept import stated_bounds
 from derive.verify.measure import exact, replayed
-from derive.verify.proved import enclosed, ranges, slopes
+from derive.verify.proved import enclosed, meant, ranges, slopes
 from derive.verify.proved.bounds import WORK, Proof, UnprovedError, bounds_of, cutting
 from derive.verify.proved.ranges import Interval
 from derive.verify.proved.seen import Search
@@ -119,8 +119,8 @@ def forgets_a_factor(slope: Interval, _: Interval, each: Any) -> list[Interval |
 
 def forgets_constants(of: Any, index: int, step: Any) -> Any:
     """Be what encloses values, but for the rounding of constants."""
-    value, error, own = WHOLE(of, index, step)
-    return value, error, None if step.origin == "rounded" else own
+    *whole, own = WHOLE(of, index, step)
+    return *whole, None if step.origin == "rounded" else own
 
 
 WHOLE = enclosed._made
@@ -164,7 +164,7 @@ def escapes(operator: str) -> int:
     for _ in range(400):
         (a, first), (b, second) = a_range(dice), a_range(dice)
         with np.errstate(all="ignore"):
-            low, high = enclosed.MEANT[operator](a, b)
+            low, high = meant.MEANT[operator](a, b)
         for x, y in product(first, second):
             if (operator != "div" or y) and np.isfinite(low[0]) and np.isfinite(high[0]):
                 found += not Fraction(low[0]) <= EXACTLY[operator](x, y) <= Fraction(high[0])

@@ -5,7 +5,7 @@ parameters and inputs being floats of their declared ranges: absolute, the large
 components. What cannot be proved says why.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,10 +23,11 @@ from derive.verify.proved.seen import SEARCH, Search, seen
 from derive.verify.proved.sphere import UNIT
 from derive.verify.proved.traits import Traits, choice_name, traits
 from derive.verify.proved.unfolded import Operation, pruned, unfolded
+from derive.verify.proved.waist import bounded
 from derive.verify.scale import measured_outputs
 from derive.verify.search import SAMPLING, Sampling
 
-WORK = 96_000_000
+WORK = 64_000_000
 """Operations, of a box for a result, of a function, after which no part is cut any more."""
 LONGEST = 2000
 """Operations of a function that bounds are tried of."""
@@ -79,7 +80,7 @@ class Proved:
     most: float = 0.0
     why: str = ""
     at: Cutting | None = None
-    parts: Cells | None = None
+    parts: tuple[Cells, ...] = ()
 
 
 def bounds_of(library: Library, program: Program, by: Proof) -> Iterator[Bound]:
@@ -104,7 +105,7 @@ def _proved(
     program: Program,
     precision: Precision,
     work: int,
-    cut: Mapping[str, Cells | None],
+    cut: Mapping[str, Sequence[Cells]],
 ) -> list[Proved]:
     """Return the bound of each output: the short ones first, whose work is left to the others."""
     found, ahead = dict[str, Proved](), dict[str, Cutting]()
@@ -115,9 +116,8 @@ def _proved(
             found[q.name] = Proved(q.name, why=str(why))
     for name, at in sorted(ahead.items(), key=lambda item: item[1].price):
         at.work = work // (len(measured_outputs(program)) - len(found))
-        parts = cut.get(name)
-        parts = at.valued(parts.lows, parts.highs) if parts else at.run()
-        found[name] = Proved(name, *_largest(at, parts), at, parts)
+        parts = bounded(at, cut.get(name, ()))
+        found[name] = Proved(name, *_largest(at, parts[-1]), at, parts)
         work -= at.spent
     return [found[q.name] for q, _ in measured_outputs(program)]
 
@@ -132,8 +132,7 @@ def cutting(
     trace = pruned(trace.steps, trace.results[span])
     if len(trace.steps) > LONGEST:
         raise UnprovedError(f"{len(trace.steps)} operations are more than the {LONGEST} tried")
-    whole = any(q.is_quaternion for q in program.inputs)
-    of = traits(trace, precision, quaternions=whole)
+    of = traits(trace, precision, [q.components for q in program.inputs if q.is_quaternion])
     name = f"derive: {library.scene.name} {F32.name} bound {program.name}"
     return Cutting(of, box(library, program, of), work, Dice(name))
 
@@ -146,9 +145,8 @@ def box(library: Library, program: Program, of: Traits) -> Region:
     ends = [ends_in_floats(quantities, c, of.precision) for c in names]
     ends += [(0.0, 1.0)] * len(of.choices)
     low, high = np.array(ends).reshape(len(ends), 2).T
-    whole = [q.components for q in program.inputs if q.is_quaternion]
-    places = [tuple(map(names.index, each)) for each in whole if set(each) <= set(names)]
-    return Region((*names, *map(choice_name, of.choices)), low, high, tuple(places))
+    places = tuple(tuple(map(names.index, each)) for each in of.quaternions)
+    return Region((*names, *map(choice_name, of.choices)), low, high, places)
 
 
 def ends_in_floats(of: dict[str, Quantity], name: str, precision: Precision) -> tuple[float, float]:
@@ -185,7 +183,7 @@ def assumed(at: Cutting) -> tuple[str, ...]:
     says = []
     if at.box.quaternions:
         says.append(f"quaternions given with |q|^2 in {UNIT[0]:g} .. {UNIT[1]:g}")
-    if at.traits.lengths:
+    if at.traits.lengths - set(at.traits.multiples):
         says.append(f"divisors |q|^2 in {BROAD[0]:g} .. {BROAD[1]:g}")
     if kinds & {"sin", "cos"}:
         says.append("sines and cosines of our own within 0.79 ulp")

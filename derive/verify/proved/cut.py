@@ -3,7 +3,7 @@
 Nothing is left out when it ends early: a bound of all is the largest of its parts, cut or not.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -12,6 +12,7 @@ import numpy as np
 from derive.verify.draw import Dice
 from derive.verify.operators import Column
 from derive.verify.proved.enclosed import Enclosed, enclosed
+from derive.verify.proved.ranges import Interval
 from derive.verify.proved.slopes import shifts
 from derive.verify.proved.sphere import near_the_sphere, of_about_unit_length
 from derive.verify.proved.traits import Traits
@@ -89,21 +90,28 @@ class Cutting:
 
     def valued(self, lows: Column, highs: Column) -> Cells:
         """Return parts with their bounds, those that hold nothing left out."""
-        lows, highs = near_the_sphere(self.box.quaternions, lows, highs)
+        lows, highs = near_the_sphere(self.box.quaternions, lows, highs, self.traits.shell)
         rows = len(self.traits.trace.results)
-        step = max(1, FULL // rows)
-        each = [self._valued(lows[:, n : n + step], highs[:, n : n + step])
-                for n in range(0, lows.shape[1], step)]  # fmt: skip
+        each = [self._valued(*ends) for ends in self.batches(lows, highs)]
         none = Cells(lows[:, :0], highs[:, :0], np.zeros((rows, 0)), np.zeros(0, int))
         return joined([none, *each])
+
+    def batches(self, lows: Column, highs: Column) -> Iterator[tuple[Column, Column]]:
+        """Yield parts, as many at once as a table of slopes holds."""
+        step = max(1, FULL // len(self.traits.trace.results))
+        for n in range(0, lows.shape[1], step):
+            yield lows[:, n : n + step], highs[:, n : n + step]
+
+    def ranges(self, lows: Column, highs: Column) -> dict[str, Interval]:
+        """Return the ranges of what is given in parts, by name."""
+        return {n: (lows[k], highs[k]) for k, n in enumerate(self.box.names)}
 
     def _valued(self, lows: Column, highs: Column) -> Cells:
         count = lows.shape[1]
         self._count(count)
-        ranges = {n: (lows[k], highs[k]) for k, n in enumerate(self.box.names)}
         with np.errstate(all="ignore"):
-            found = enclosed(self.traits, ranges, count)
-            every = Cells(lows, highs, shifts(found), found.blamed)
+            found = enclosed(self.traits, self.ranges(lows, highs), count)
+            every = Cells(lows, highs, shifts(found, self.rows), found.blamed)
         return every.of(~found.void) if found.void.any() else every
 
     def scores(self, parts: Cells) -> Column:
@@ -159,30 +167,29 @@ class Cutting:
         """Return points of the box with quaternions of about unit length."""
         points = np.clip(points, self.box.lows[:, None], self.box.highs[:, None])
         for places in self.box.quaternions:
-            points[list(places)] = of_about_unit_length(points[list(places)])
+            points[list(places)] = of_about_unit_length(points[list(places)], self.traits.shell)
         return points
 
     def _certain(self, points: Column) -> Column:
         """Return the bound at points, where choices are what they are."""
-        free = [n.startswith("choice") for n in self.box.names]
         ends = points.copy(), points.copy()
-        ends[0][free], ends[1][free] = 0.0, 1.0
-        ranges = {n: (ends[0][k], ends[1][k]) for k, n in enumerate(self.box.names)}
+        ends[0][self._free], ends[1][self._free] = 0.0, 1.0
         self._count(points.shape[1])
         with np.errstate(all="ignore"):
-            found = shifts(enclosed(self.traits, ranges, points.shape[1])).max(axis=0, initial=0.0)
-        return np.where(np.isfinite(found), found, 0.0)
+            found = shifts(enclosed(self.traits, self.ranges(*ends), points.shape[1]), self.rows)
+        most = found.max(axis=0, initial=0.0)
+        return np.where(np.isfinite(most), most, 0.0)
 
     def _started(self) -> tuple[Column, Column]:
         """Return parts to begin with: by choices, then quaternions, of the sphere alone."""
         ends = self.box.lows[:, None], self.box.highs[:, None]
-        for k in (k for k, n in enumerate(self.box.names) if n.startswith("choice")):
+        for k in np.flatnonzero(self._free).tolist():
             decided = self.valued(*_in_two(ends, k))
             ends = decided.lows, decided.highs
         for _ in range(FINEST if self.box.quaternions else 0):
             finer = ends
             for k in (k for places in self.box.quaternions for k in places):
-                finer = near_the_sphere(self.box.quaternions, *_in_two(finer, k))
+                finer = near_the_sphere(self.box.quaternions, *_in_two(finer, k), self.traits.shell)
             if finer[0].shape[1] > min(MOST / 4, START * self.work / self.price):
                 break
             ends = finer
@@ -214,17 +221,28 @@ class Cutting:
             ends = np.linspace(parts.lows[k, 0], parts.highs[k, 0], PIECES + 1)
             own = slice(1 + PIECES * k, 1 + PIECES * (k + 1))
             low[k, own], high[k, own] = ends[:-1], ends[1:]
-        ranges = {n: (low[k], high[k]) for k, n in enumerate(self.box.names)}
         self._count(low.shape[1])
         with np.errstate(all="ignore"):
-            found = enclosed(self.traits, ranges, low.shape[1])
-            over = self.scores(Cells(low, high, shifts(found), found.blamed))
+            found = enclosed(self.traits, self.ranges(low, high), low.shape[1])
+            over = self.scores(Cells(low, high, shifts(found, self.rows), found.blamed))
         if not np.isfinite(over[0]):
             over = _width(found)
         width = (parts.highs[:, 0] - parts.lows[:, 0]) / (self.box.highs - self.box.lows)
+        width[self._free] = 0.0
         with np.errstate(all="ignore"):
             gains = 1 - over[1:].reshape(d, PIECES).mean(axis=1) / over[0]
+        gains[self._free] = 0.0
         return np.asarray(np.maximum(np.where(np.isfinite(gains), gains, 0.0), 1e-6 * width))
+
+    @property
+    def rows(self) -> range:
+        """Return all results."""
+        return range(len(self.traits.trace.results))
+
+    @property
+    def _free(self) -> Column:
+        """Return which sides are choices: once decided, there is nothing to cut them for."""
+        return np.array([n.startswith("choice") for n in self.box.names], dtype=bool)
 
     def _count(self, boxes: int) -> None:
         self.spent += boxes * self.price

@@ -5,7 +5,7 @@ errors add up plainly. A value in floats is taken along the way from the true on
 is computed: its range holds them and what is between, and beside it stands its own rounding.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -14,24 +14,20 @@ import numpy as np
 from derive.program.arithmetic import rounded
 from derive.program.own_sine import FITTED
 from derive.verify.operators import Column
+from derive.verify.proved.forms import Form, fitted, plain, widened
+from derive.verify.proved.lengths import UPWARDS, squared_length, tightened, within
+from derive.verify.proved.meant import exactly, formed
+from derive.verify.proved.multiples import squares
 from derive.verify.proved.ranges import (
     Interval,
     column,
     greatest,
     half_unit,
-    hull,
-    inverse,
     magnitude,
-    negated,
-    one_power,
     outward,
-    powers_of_two,
-    root_of,
-    squared,
-    sum_of,
-    times,
-    wave,
+    unit,
 )
+from derive.verify.proved.sphere import sides
 from derive.verify.proved.traits import COMPARED, Traits, choice_name
 from derive.verify.proved.unfolded import Operation
 
@@ -46,15 +42,13 @@ OWN_WAVE = {24: 0.79, 53: 0.77}
 """In units in the last place: sines and cosines of our own (``program.own_sine``)."""
 SIZEABLE = {24: 2.0**-100, 53: 2.0**-960}
 """What underflow may leave of an operation on pairs, more than of all floats that it is made of."""
-UPWARDS = 1 + 2.0**-40
-"""More than rounding takes from a sum of errors."""
 
 
 @dataclass
 class Enclosed:
     """The values of all places over columns of boxes.
 
-    ranges : of each place        errors : of set-up's values
+    ranges : of each place, and its form      errors : of set-up's values
     own    : how far a place's own rounding moves it
     blamed : the first place that has no bound in a box, -1 for none
     void   : the boxes that hold nothing
@@ -62,6 +56,7 @@ class Enclosed:
 
     traits: Traits
     ranges: list[Interval]
+    forms: list[Form]
     errors: list[Column]
     own: list[Column | None]
     blamed: Column
@@ -70,13 +65,20 @@ class Enclosed:
 
 def enclosed(of: Traits, boxes: Mapping[str, Interval], count: int) -> Enclosed:
     """Return the values of all places over boxes, the ranges of what is given by name."""
-    found = Enclosed(of, [], [], [], np.full(count, -1), np.zeros(count, bool))
+    found = Enclosed(of, [], [], [], [], np.full(count, -1), np.zeros(count, bool))
+    own_boxes = {s.name: boxes[s.name] for s in of.trace.steps if s.name}
+    known = sides(own_boxes, of.quaternions, of.shell)
+    symbols = next((len(form.parts) for form in known.values()), 0)
     for index, step in enumerate(of.trace.steps):
-        at = given(of, step, boxes, count) if not step.operands else _made(found, index, step)
-        value, error, own = at
+        if step.operands:
+            value, form, error, own = _made(found, index, step)
+        else:
+            value, error, own = given(of, step, boxes, count)
+            form = widened(known.get(step.name) or plain(value, symbols), own)
         if choice_name(index) in boxes:
             value = _decided(found, value, boxes[choice_name(index)])
         found.ranges.append(value)
+        found.forms.append(form)
         found.errors.append(error)
         found.own.append(own)
         _blame(found, index, step)
@@ -112,7 +114,11 @@ def given(of: Traits, step: Operation, boxes: Mapping[str, Interval], count: int
     """Return the range of a number or of what is given, its error in pairs, its own in floats."""
     nothing = np.zeros(count)
     if step.operator == "given":
-        return boxes[step.name], nothing, None
+        if step.name not in of.carried:
+            return boxes[step.name], nothing, None
+        carried, most = of.carried[step.name], greatest(boxes[step.name])
+        own = carried + half_unit((most + carried) * UPWARDS, of.precision.bits, _least(of))
+        return _widened(boxes[step.name], own), nothing, own
     q = step.number or Fraction(0)
     held = Fraction(float(rounded(q, of.precision.dtype)))
     if step.origin == "pairs":
@@ -130,38 +136,58 @@ def given(of: Traits, step: Operation, boxes: Mapping[str, Interval], count: int
     return (value[0] - gap, value[1] + gap), nothing, np.full(count, gap)
 
 
+def _least(of: Traits) -> float:
+    return float(np.finfo(of.precision.dtype).smallest_subnormal)
+
+
 def _u(of: Traits) -> float:
     return of.precision.unit_roundoff
 
 
-def _made(found: Enclosed, index: int, step: Operation) -> At:
+def _made(
+    found: Enclosed, index: int, step: Operation
+) -> tuple[Interval, Form, Column, Column | None]:
+    """Return the range and form of an operation's value, its error in pairs, its own in floats."""
     of = found.traits
-    each = [found.ranges[o] for o in step.operands]
+    each, forms = [found.ranges[o] for o in step.operands], [found.forms[o] for o in step.operands]
     exact = exactly(of, index, step, each)
-    if index in of.lengths:
-        exact = np.clip(exact[0], *BROAD), np.clip(exact[1], *BROAD)
-    nothing = np.zeros(len(found.blamed))
+    if step.operator in (*COMPARED, "both", "either"):
+        return exact, plain(exact, len(forms[0].parts)), np.zeros(len(found.blamed)), None
+    form = formed(of, index, step, each, forms, exact)
+    if index in of.multiples:
+        value, form, off = squared_length(of, index, found.ranges, found.forms, found.own)
+        exact = np.maximum(exact[0], value[0]), np.minimum(exact[1], value[1])
+        for n in squares(of.trace.steps, index):
+            found.ranges[n] = within(found.ranges[n], exact[1] + off)
+    elif index in of.lengths:
+        ends = of.shell if of.carried else BROAD
+        exact = np.clip(exact[0], *ends), np.clip(exact[1], *ends)
+    exact = tightened(exact, form)
+    error, own = _errors(found, index, step, exact)
+    return _widened(exact, own), widened(fitted(form, exact), own), error, own
+
+
+def _errors(
+    found: Enclosed, index: int, step: Operation, exact: Interval
+) -> tuple[Column, Column | None]:
+    """Return the error of a value in pairs, and of one in floats how far it is rounded."""
+    of, nothing = found.traits, np.zeros(len(found.blamed))
+    each = [found.ranges[o] for o in step.operands]
     if step.origin == "rounded":
         if of.exact[index]:
-            return exact, nothing, None
+            return nothing, None
         (error,) = (found.errors[o] for o in step.operands)
-        least = float(np.finfo(of.precision.dtype).smallest_subnormal)
         most = (greatest(exact) + error) * UPWARDS
-        own = error + half_unit(most, of.precision.bits, least)
-        return _widened(exact, own), nothing, own
-    if step.operator in (*COMPARED, "both", "either"):
-        return exact, nothing, None
+        return nothing, error + half_unit(most, of.precision.bits, _least(of))
     if step.operator == "select" and _may_turn(of, index, step):
         torn = each[0][0] != each[0][1]
-        jump = np.where(torn, greatest(exact) * 2, 0.0)
         if step.origin == "pairs":
-            return exact, np.maximum(*(found.errors[o] for o in step.operands[1:])) + jump, None
-        own = np.where(torn, np.inf, 0.0)
-        return exact, nothing, own
+            jump = np.where(torn, greatest(exact) * 2, 0.0)
+            return np.maximum(*(found.errors[o] for o in step.operands[1:])) + jump, None
+        return nothing, np.where(torn, np.inf, 0.0)
     if step.origin == "pairs":
-        return exact, _pair_error(of, step, found, exact), None
-    rounding = _rounding(of, step, exact, each)
-    return _widened(exact, rounding), nothing, rounding
+        return _pair_error(of, step, found, exact), None
+    return nothing, _rounding(of, step, exact, each)
 
 
 def _may_turn(of: Traits, index: int, step: Operation) -> bool:
@@ -177,8 +203,7 @@ def _rounding(
     of: Traits, step: Operation, exactly: Interval, each: Sequence[Interval]
 ) -> Column | None:
     """Return how far an operation in floats rounds at most, None if not at all."""
-    steps, bits = of.trace.steps, of.precision.bits
-    least = float(np.finfo(of.precision.dtype).smallest_subnormal)
+    steps, bits, least = of.trace.steps, of.precision.bits, _least(of)
     if step.operator in ("neg", "abs", "select", "power_of_two"):
         return None
     if step.operator == "add" and step.operands[0] == step.operands[1]:
@@ -186,11 +211,11 @@ def _rounding(
     numbers = [steps[o].number for o in step.operands]
     if step.operator == "mul" and any(q is not None and _shifts(q) for q in numbers):
         return np.full_like(exactly[0], least)
-    found = half_unit(greatest(exactly), bits, least)
+    most = greatest(exactly)
     if step.operator not in ("sin", "cos"):
-        return found
+        return half_unit(most, bits, least)
     far = ~(greatest(each[0]) <= FITTED[bits].largest)
-    return np.where(far, np.inf, found * (2 * OWN_WAVE[bits]))
+    return np.where(far, np.inf, unit(most, bits) * OWN_WAVE[bits] + least)
 
 
 def _shifts(q: Fraction) -> bool:
@@ -232,64 +257,3 @@ def _pair_error(of: Traits, step: Operation, found: Enclosed, exactly: Interval)
     lost = SIZEABLE[of.precision.bits] / np.minimum(least, 1.0)
     own = PAIR_ERROR[step.operator] * square_of_u * (greatest(exactly) + came)
     return np.asarray((came + own + lost) * UPWARDS)
-
-
-def _less(a: Interval, b: Interval) -> Interval:
-    return np.where(a[1] < b[0], 1.0, 0.0), np.where(a[0] >= b[1], 0.0, 1.0)
-
-
-def _at_most(a: Interval, b: Interval) -> Interval:
-    return np.where(a[1] <= b[0], 1.0, 0.0), np.where(a[0] > b[1], 0.0, 1.0)
-
-
-def _select(condition: Interval, yes: Interval, no: Interval) -> Interval:
-    both = hull(yes, no)
-    sure, never = condition[0] > 0, condition[1] < 1
-    return (
-        np.where(sure, yes[0], np.where(never, no[0], both[0])),
-        np.where(sure, yes[1], np.where(never, no[1], both[1])),
-    )
-
-
-def _ends(which: Callable[[Column, Column], Column]) -> Callable[[Interval, Interval], Interval]:
-    return lambda a, b: (which(a[0], b[0]), which(a[1], b[1]))
-
-
-def _unbounded(*given: Interval) -> Interval:
-    return np.full_like(given[0][0], -np.inf), np.full_like(given[0][0], np.inf)
-
-
-MEANT: Mapping[str, Callable[..., Interval]] = {
-    "add": sum_of,
-    "sub": lambda a, b: sum_of(a, negated(b)),
-    "mul": times,
-    "div": lambda a, b: times(a, inverse(b)),
-    "neg": negated,
-    "sqrt": root_of,
-    "abs": magnitude,
-    "sin": lambda a: wave(a, 0),
-    "cos": lambda a: wave(a, 1),
-    "power_of_two": powers_of_two,
-    "less": _less,
-    "at_most": _at_most,
-    "both": _ends(np.minimum),
-    "either": _ends(np.maximum),
-    "select": _select,
-    "rounded": lambda a: a,
-    "least": _ends(np.minimum),
-    "most": _ends(np.maximum),
-}
-
-
-def exactly(of: Traits, index: int, step: Operation, each: Sequence[Interval]) -> Interval:
-    """Return the range of an operation without rounding."""
-    if step.operator == "mul" and step.operands[0] == step.operands[1]:
-        return squared(each[0])
-    if step.operator == "power_of_two" and of.any_power:
-        return one_power(each[0])
-    kind = of.kinds[index]
-    if kind in ("least", "most"):
-        return MEANT[kind](each[1], each[2])
-    if kind == "abs":
-        return magnitude(each[2])
-    return MEANT.get(step.operator, _unbounded)(*each)

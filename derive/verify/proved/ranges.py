@@ -22,6 +22,7 @@ power of two, which the high part of a pair may be above."""
 SINE_SLACK = 2.0**-50
 EXPONENT = 0x7FF0_0000_0000_0000
 """Where the exponent of a double stands: what is left of its bits is a power of two."""
+LARGEST = float(np.finfo(np.float64).max)
 FARTHEST = float(FITTED[53].largest)
 
 
@@ -132,10 +133,25 @@ def one_power(a: Interval) -> Interval:
 
 
 def half_unit(most: Column, bits: int, least: float) -> Column:
-    """Return how far rounding to floats of so many bits may move a number up to ``most``."""
-    below = (np.asarray(most, np.float64).view(np.int64) - 1) & EXPONENT  # of the float before it
-    found = np.maximum(below.view(np.float64) * 2.0**-bits, least)
+    """Return how far rounding to floats of so many bits may move a number up to ``most``.
+
+    A number that is little above a power of two is no further from that.
+    """
+    finite = np.minimum(np.asarray(most, np.float64), LARGEST)
+    power = (finite.view(np.int64) & EXPONENT).view(np.float64)
+    half = power * 2.0**-bits
+    found = np.maximum(np.maximum(np.minimum(half, finite - power), 0.5 * half), least)
     return np.where(most == 0, 0.0, np.where(most < np.inf, found, np.inf))
+
+
+def unit(most: Column, bits: int) -> Column:
+    """Return the unit in the last place of numbers up to ``most``, not of that if a power of two.
+
+    >>> unit(np.array([1.0, 1.5]), 24) * 2**24
+    array([1., 2.])
+    """
+    mantissa, exponent = np.frexp(most)
+    return np.asarray(np.ldexp(1.0, exponent - bits - (mantissa == 0.5)))
 
 
 def column(x: Any, count: int) -> Interval:

@@ -16,7 +16,8 @@ from derive.program.precision import Precision
 from derive.program.program import Program, component_names
 from derive.program.status import Test, tried
 from derive.verify.operators import Column
-from derive.verify.proved.enclosed import PAIR_ERROR, enclosed, exactly, given
+from derive.verify.proved.enclosed import PAIR_ERROR, enclosed, given
+from derive.verify.proved.meant import exactly
 from derive.verify.proved.ranges import Interval, outward
 from derive.verify.proved.traits import Traits, traits
 from derive.verify.proved.unfolded import unfolded
@@ -74,6 +75,16 @@ def sectors(
     return found
 
 
+def whole_sectors(
+    library: Library, function: Program, cases: Sequence[FloatRanges], precision: Precision
+) -> list[Sector]:
+    """Return ``cases`` as they are, for who knows otherwise that nothing divides by zero."""
+    of = _watched(library, function, tuple(cases[0]), precision)
+    boxes = np.array([[case[n] for n in of.names] for case in cases]).T
+    doubt, made = _looked_at(of, boxes)
+    return [_sector(of, boxes[..., k], made[..., k]) for k in np.flatnonzero(doubt >= 0)]
+
+
 def pair_operations(
     library: Library, program: Program, parts: Sequence[Sector], precision: Precision
 ) -> set[PairOperation]:
@@ -81,7 +92,7 @@ def pair_operations(
     names, found = tuple(parts[0].inputs), set[PairOperation]()
     boxes = np.array([[part.inputs[n] for n in names] for part in parts]).T
     known = {n: (boxes[0, k], boxes[1, k]) for k, n in enumerate(names)}
-    of = traits(unfolded(library, program, precision.bits), precision, quaternions=False)
+    of = traits(unfolded(library, program, precision.bits), precision)
     with np.errstate(all="ignore"):
         at = enclosed(of, known, len(parts))
     for step in of.trace.steps:
@@ -101,7 +112,7 @@ def _watched(
     tests = tuple(test for _, kept in tried(library.setup) for test in kept)
     setup = replace(library.setup, results=(*made.values(), *(value for _, value, _ in tests)))
     each = (unfolded(library, program, precision.bits) for program in (function, setup))
-    own, ready = (traits(trace, precision, quaternions=False) for trace in each)
+    own, ready = (traits(trace, precision) for trace in each)
     return Watched(names, tuple(made), tests, own, ready)
 
 

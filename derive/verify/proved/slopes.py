@@ -9,18 +9,20 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from derive.verify.operators import Column
-from derive.verify.proved.enclosed import UPWARDS, Enclosed
+from derive.verify.proved.enclosed import Enclosed
+from derive.verify.proved.lengths import UPWARDS
+from derive.verify.proved.meant import decided
 from derive.verify.proved.ranges import Interval, greatest, inverse, negated, sum_of, times, wave
 from derive.verify.proved.unfolded import Operation
 
 
-def shifts(of: Enclosed) -> Column:
-    """Return how far rounding moves each result at most: a row a result, a column a box."""
+def shifts(of: Enclosed, results: Sequence[int]) -> Column:
+    """Return how far rounding moves some results at most: a row a result, a column a box."""
     trace, count = of.traits.trace, len(of.blamed)
-    rows = len(trace.results)
+    rows = len(results)
     total = np.zeros((rows, count))
     slopes: dict[int, Interval] = {}
-    for row, place in enumerate(trace.results):
+    for row, place in enumerate(trace.results[r] for r in results):
         own = np.zeros((rows, count))
         own[row] = 1.0
         slopes[place] = (own, own) if place not in slopes else _both(slopes[place], own)
@@ -81,7 +83,7 @@ def _root(slope: Interval, value: Interval, _: Sequence[Interval]) -> list[Inter
 
 
 def _chosen(slope: Interval, _: Interval, each: Sequence[Interval]) -> list[Interval | None]:
-    sure, never = each[0][0] > 0, each[0][1] < 1
+    sure, never = decided("select", each)
     return [None, _where(slope, sure, never), _where(slope, never, sure)]
 
 
@@ -91,11 +93,9 @@ def _where(slope: Interval, sure: Column, never: Column) -> Interval:
     return low, np.where(sure, slope[1], np.where(never, 0.0, np.maximum(slope[1], 0.0)))
 
 
-def _extreme(sign: int) -> Callable[..., list[Interval | None]]:
+def _extreme(kind: str) -> Callable[..., list[Interval | None]]:
     def rule(slope: Interval, _: Interval, each: Sequence[Interval]) -> list[Interval | None]:
-        first, second = each[1], each[2]
-        below, above = first[1] < second[0], first[0] > second[1]
-        sure, never = (above, below) if sign > 0 else (below, above)
+        sure, never = decided(kind, each)
         return [None, _where(slope, sure, never), _where(slope, never, sure)]
 
     return rule
@@ -117,7 +117,7 @@ SLOPES: Mapping[str, Callable[[Interval, Interval, Sequence[Interval]], list[Int
     "sin": lambda slope, _, each: [times(slope, _flat(wave(each[0], 1)))],
     "cos": lambda slope, _, each: [negated(times(slope, _flat(wave(each[0], 0))))],
     "select": _chosen,
-    "least": _extreme(-1),
-    "most": _extreme(1),
+    "least": _extreme("least"),
+    "most": _extreme("most"),
     "abs": lambda slope, _, each: [None] * (len(each) - 1) + [_bent(slope, each[-1])],
 }

@@ -1,18 +1,23 @@
 """What is known of the operations of a function before any box: what is exact, and what chooses."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from itertools import product
+from types import MappingProxyType
 
 from derive.program.arithmetic import rounded
 from derive.program.precision import Precision
+from derive.verify.proved.multiples import cone, is_multiple, squares
+from derive.verify.proved.sphere import UNIT
 from derive.verify.proved.unfolded import Operation, Unfolded
 
 COMPARED = ("less", "at_most")
 ALIKE = (*COMPARED, "add", "sub", "neg", "abs", "select", "power_of_two", "rounded")
 """What gives, of values with a common factor, a value with that factor, or none."""
 MOST_CHOICES = 12
+NOTHING: Mapping[str, float] = MappingProxyType({})
 
 
 @dataclass(frozen=True)
@@ -20,13 +25,17 @@ class Traits:
     """What is known of a trace before any box: see ``Enclosed``.
 
     exact       : whether a place has the same value in floats, a choice by such values among them
-    quaternions : whether any are given
+    quaternions : the components of those that are given
+    carried     : how far what is given is off already, by name, before it is rounded
+    shell       : between which numbers the squared length of quaternions is
     """
 
     trace: Unfolded
     precision: Precision
     exact: tuple[bool, ...]
-    quaternions: bool
+    quaternions: tuple[tuple[str, ...], ...]
+    carried: Mapping[str, float]
+    shell: tuple[float, float] = UNIT
 
     @cached_property
     def kinds(self) -> tuple[str, ...]:
@@ -57,23 +66,23 @@ class Traits:
 
     @cached_property
     def lengths(self) -> frozenset[int]:
-        """Return the places of sums of four squares that are divided by, or rooted."""
+        """Return the places of sums of four squares that are divided by, rooted, or results."""
         steps = self.trace.steps
         if not self.quaternions:
             return frozenset()
         rooted = {o for s in steps for o in s.operands[-1:] if s.operator in ("div", "sqrt")}
-        return frozenset(n for n in rooted if len(_squares(steps, n)) == 4)
+        rooted.update(self.trace.results)
+        return frozenset(n for n in rooted if len(squares(steps, n)) == 4)
 
-
-def _squares(steps: Sequence[Operation], index: int) -> list[int]:
-    """Return what a sum adds the squares of, nothing if it is no such sum."""
-    step = steps[index]
-    if step.operator == "mul" and step.operands[0] == step.operands[1]:
-        return [step.operands[0]]
-    if step.operator != "add":
-        return []
-    each = [_squares(steps, o) for o in step.operands]
-    return [n for part in each for n in part] if all(each) else []
+    @cached_property
+    def multiples(self) -> Mapping[int, tuple[Sequence[str], Sequence[int]]]:
+        """Return which lengths are a given quaternion's times another, by which, and its cone."""
+        steps, found = self.trace.steps, dict[int, tuple[Sequence[str], Sequence[int]]]()
+        for n, names in product(sorted(self.lengths), self.quaternions):
+            within = cone(steps, n, names)
+            if is_multiple(steps, within, names):
+                found[n] = names, within
+        return found
 
 
 def choice_name(index: int) -> str:
@@ -81,12 +90,20 @@ def choice_name(index: int) -> str:
     return f"choice {index}"
 
 
-def traits(trace: Unfolded, precision: Precision, *, quaternions: bool) -> Traits:
+def traits(
+    trace: Unfolded,
+    precision: Precision,
+    quaternions: Sequence[Sequence[str]] = (),
+    carried: Mapping[str, float] = NOTHING,
+) -> Traits:
     """Return what is known of a trace in a precision before any box."""
     exact: list[bool] = []
     for step in trace.steps:
-        exact.append(_is_exact(step, [exact[o] for o in step.operands], precision))
-    return Traits(trace, precision, tuple(exact), quaternions)
+        own = _is_exact(step, [exact[o] for o in step.operands], precision)
+        exact.append(own and step.name not in carried)
+    names = {s.name for s in trace.steps}
+    whole = tuple(tuple(each) for each in quaternions if names.issuperset(each))
+    return Traits(trace, precision, tuple(exact), whole, carried)
 
 
 def _falls_out(trace: Unfolded, scale: int) -> bool:

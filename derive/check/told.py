@@ -1,0 +1,56 @@
+"""What Eva is told of divisors whose ranges are proved elsewhere, and what tries these ranges.
+
+Intervals in C cannot follow why some divisor keeps away from zero, however finely inputs are cut.
+Where it is proved (``verify.proved.divisors``), an annotation tells it; a run of the function at
+samples, whose every value is looked at, must stay in these ranges.
+"""
+
+import re
+from collections.abc import Sequence
+
+import numpy as np
+
+from derive.library.library import Library
+from derive.program.precision import Precision
+from derive.program.program import Program
+from derive.program.run import numbers_of, run_lines
+from derive.verify.columns import arithmetics, supplied
+from derive.verify.draw import Dice, Sampled, drawn
+from derive.verify.proved.divisors import Divisor
+from derive.verify.proved.seen import by_component
+
+TRIED = 4096
+"""Samples that ranges are tried at."""
+
+
+def escaped(
+    library: Library, program: Program, ranges: Sequence[Divisor], precision: Precision
+) -> str:
+    """Return which value of a function leaves its range at a sample, "" if none does."""
+    of, by = Sampled(library, precision), arithmetics(precision.dtype)
+    rows = drawn(of, Dice(f"derive: {library.scene.name} told {program.name}"), TRIED)
+    ends = np.where(rows > (of.lows + of.highs)[:, None] / 2, of.highs[:, None], of.lows[:, None])
+    rows[:, 1::2] = np.where(np.isfinite(ends), ends, rows)[:, 1::2]
+    at = supplied(of.setup, by_component(of, rows), by)
+    known = dict(at.own) | numbers_of(program, by.own)
+    with np.errstate(all="ignore"):
+        run_lines(program.ops, by.own, known)
+    for divisor in ranges:
+        found = known[divisor.name]
+        if not np.all((divisor.low <= found) & (found <= divisor.high)):
+            is_between = f"{divisor.name} is {found.min():g} .. {found.max():g} at samples"
+            return f"{is_between}, beyond what is proved, {divisor.low:g} .. {divisor.high:g}"
+    return ""
+
+
+def with_ranges(text: str, symbol: str, ranges: Sequence[Divisor]) -> str:
+    """Return C in which a function's values are told to be in ranges, where it makes them."""
+    body = re.search(rf"^void {symbol}\([^)]*\)\n\{{\n.*?^\}}$", text, re.MULTILINE | re.DOTALL)
+    if body is None:
+        return text
+    told = body[0]
+    for divisor in ranges:
+        made = re.compile(rf"^    const \w+ {divisor.name} = .*;$", re.MULTILINE)
+        says = f"    /*@ admit {divisor.low!r} <= {divisor.name} <= {divisor.high!r}; */"
+        told = made.sub(rf"\g<0>\n{says}", told, count=1)
+    return text[: body.start()] + told + text[body.end() :]

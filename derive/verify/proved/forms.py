@@ -1,0 +1,165 @@
+"""Linear forms: a middle, how far each side of a box moves a value from it, and a rest.
+
+Ranges forget that values hang together: x - x is as wide as twice x. A form knows to the first
+order what both are made of. Columns are boxes; each side's symbol is between -1 and 1; the rest
+holds what is not linear, and what doubles round.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from derive.verify.operators import Column
+from derive.verify.proved.ranges import Interval, greatest, inverse, outward, root_of, wave
+
+LOST = 2.0**-48
+"""More than doubles round in an operation on forms, as a part of the product of their sizes."""
+LEAST = 1e-290
+"""More than underflow leaves, of all that is added up."""
+
+
+@dataclass(frozen=True)
+class Form:
+    """Values, a column a box; ``parts`` by symbol."""
+
+    middle: Column
+    parts: Column
+    rest: Column
+
+    @property
+    def spread(self) -> Column:
+        """Return how far the symbols and the rest move it at most."""
+        return np.asarray(np.abs(self.parts).sum(axis=0) + self.rest)
+
+    @property
+    def ends(self) -> Interval:
+        """Return its range."""
+        by = self.spread
+        return outward(self.middle - by * (1 + LOST), self.middle + by * (1 + LOST))
+
+    @property
+    def size(self) -> Column:
+        """Return the largest that it may be, without its sign."""
+        return np.asarray(np.abs(self.middle) + self.spread)
+
+
+def plain(a: Interval, symbols: int) -> Form:
+    """Return a range, of which nothing is known but its ends."""
+    parts = np.broadcast_to(0.0, (symbols, *a[0].shape))
+    if a[0] is a[1]:
+        return Form(a[0], parts, np.zeros_like(a[0]))
+    middle = (a[0] + a[1]) / 2
+    rest = np.maximum(a[1] - middle, middle - a[0])
+    rest = rest + (np.abs(a[0]) + np.abs(a[1])) * LOST
+    return Form(middle, parts, np.where(a[0] == a[1], 0.0, rest))
+
+
+def side(a: Interval, symbol: int, symbols: int) -> Form:
+    """Return the side of a box, which has a symbol of its own."""
+    made = plain(a, symbols)
+    parts = made.parts.copy()
+    parts[symbol] = made.rest
+    return Form(made.middle, parts, np.zeros_like(made.rest))
+
+
+def sum_of_forms(a: Form, b: Form) -> Form:
+    """Return a + b."""
+    made = Form(a.middle + b.middle, a.parts + b.parts, a.rest + b.rest)
+    return widened(made, LOST * made.size)
+
+
+def opposite(a: Form) -> Form:
+    """Return -a."""
+    return Form(-a.middle, -a.parts, a.rest)
+
+
+def difference(a: Form, b: Form) -> Form:
+    """Return a - b."""
+    return sum_of_forms(a, opposite(b))
+
+
+def product(a: Form, b: Form) -> Form:
+    """Return a b."""
+    over = a.spread, b.spread
+    sizes = np.abs(a.middle) + over[0], np.abs(b.middle) + over[1]
+    rest = np.abs(a.middle) * b.rest + np.abs(b.middle) * a.rest + over[0] * over[1]
+    parts = a.middle * b.parts + b.middle * a.parts
+    lost = LOST * sizes[0] * sizes[1] + LEAST * ((sizes[0] > 0) & (sizes[1] > 0))
+    return Form(a.middle * b.middle, parts, rest + lost)
+
+
+def square(a: Form) -> Form:
+    """Return a^2: what is of the second order is not below zero."""
+    over = a.spread
+    half = over * over / 2
+    rest = 2 * np.abs(a.middle) * a.rest + half + LOST * (np.abs(a.middle) + over) ** 2 + LEAST
+    return Form(a.middle * a.middle + half, 2 * a.middle * a.parts, rest)
+
+
+def quotient(a: Form, b: Form, of: Interval) -> Form:
+    """Return a / b, b within a range too: the quotient of middles, and what is left over b."""
+    share = np.where(b.middle != 0, a.middle / np.where(b.middle != 0, b.middle, 1.0), 0.0)
+    whole = Form(share, np.zeros_like(a.parts), np.zeros_like(a.rest))
+    left = difference(a, product(whole, b))
+    return sum_of_forms(whole, product(left, inverse_form(b, of)))
+
+
+def inverse_form(a: Form, of: Interval) -> Form:
+    """Return 1/a, a within a range too; nothing is known of it if that may be zero."""
+    low, high = of
+    ends = inverse(of)
+    with np.errstate(all="ignore"):
+        slope = -1.0 / (low * high)
+        middle = np.sign(low) * 2.0 / np.sqrt(low * high)
+        over = 1.0 / low + 1.0 / high
+    return _line(a, slope, middle, over, greatest(ends))
+
+
+def root_form(a: Form, of: Interval) -> Form:
+    """Return the root of a, a within a range too that is not below zero."""
+    low, high = root_of(of)
+    low, high = low * (1 - LOST), high * (1 + LOST)
+    with np.errstate(all="ignore"):
+        slope = 1.0 / (low + high)
+        return _line(a, slope, (low + high) / 4, low * high * slope, high)
+
+
+def wave_form(a: Form, of: Interval, which: int) -> Form:
+    """Return sines (0) or cosines (1) of a, a within a range too."""
+    middle = (of[0] + of[1]) / 2
+    reach = np.maximum(of[1] - middle, middle - of[0])
+    here = [wave((middle, middle), w) for w in (which, 1 - which)]
+    slope = (here[1][0] + here[1][1]) / 2 * (-1.0 if which else 1.0)
+    bent = greatest(wave(of, which)) * reach * reach / 2
+    bent = bent + (here[0][1] - here[0][0]) / 2 + (here[1][1] - here[1][0]) / 2 * reach
+    base = (here[0][0] + here[0][1]) / 2 - slope * middle
+    return _line(a, slope, base - bent, base + bent, 1.0 + np.abs(middle) + reach)
+
+
+def _line(a: Form, slope: Column, first: Column, second: Column, size: Column) -> Form:
+    """Return a by a slope, plus anything between two numbers; ``size`` is of all that is met."""
+    middle = (first + second) / 2
+    rest = np.abs(second - first) / 2 + np.abs(slope) * a.rest
+    over = size + np.abs(middle) + np.abs(slope) * a.size
+    return Form(slope * a.middle + middle, slope * a.parts, rest + LOST * over + LEAST)
+
+
+def widened(a: Form, by: Column | None) -> Form:
+    """Return a with so much more on either side."""
+    return a if by is None else Form(a.middle, a.parts, a.rest + by)
+
+
+def chosen(a: Form, b: Form, where: Column) -> Form:
+    """Return the first where something is true, elsewhere the second."""
+    return Form(
+        np.where(where, a.middle, b.middle),
+        np.where(where, a.parts, b.parts),
+        np.where(where, a.rest, b.rest),
+    )
+
+
+def fitted(a: Form, of: Interval) -> Form:
+    """Return a, or its range alone where that says more than all that a form leaves open."""
+    half = (of[1] - of[0]) / 2
+    fits = a.rest <= half
+    return a if fits.all() else chosen(a, plain(of, len(a.parts)), fits)
