@@ -106,7 +106,7 @@ def wave(a: Interval, which: int) -> Interval:
     """Return sines (0) or cosines (1)."""
     far = ~(greatest(a) < FARTHEST)
     low, high = (np.where(far, 0.0, end) for end in a)
-    ends = [np.asarray(sine_and_cosine(end, np.float64)[which]) for end in (low, high)]
+    ends = np.asarray(sine_and_cosine(np.stack(np.broadcast_arrays(low, high)), np.float64)[which])
     turn = 2 * float(PI)
     quarters = 0.25 - 0.25 * which  # of a turn, to the first crest
     crests = (high / turn - quarters, low / turn - quarters)
