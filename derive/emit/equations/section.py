@@ -20,7 +20,7 @@ from derive.scene.said import potential_said
 from derive.scene.unit import Dimension
 
 LONG = 24
-"""Lines that a function takes as first written, beyond which none of its answers is shown closed:
+"""Lines that the answers of a function stand on, beyond which none of these is shown closed:
 tidying and solving all of them to find that out takes longer than all else."""
 Standing = Literal["law", "balance", "solution", "definition"]
 
@@ -118,7 +118,8 @@ class Outline:
     @property
     def is_long(self) -> bool:
         """Tell whether no answer is expected to come down to a few lines."""
-        return sum(len(part.equations) for part in self.parts) > LONG
+        lines = (left for part in self.parts for left, _ in part.equations)
+        return sum(left not in self.answers for left in lines) > LONG
 
 
 def outline(library: Library, base: str) -> Outline:
