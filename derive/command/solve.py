@@ -11,7 +11,7 @@ import derive
 from derive.command.parsed import location, seconds, typed
 from derive.command.terminal import complain, console, print_rows
 from derive.solve.handle import STEP
-from derive.solve.onto_constraints import fulfilling
+from derive.solve.onto_constraints import held_example
 
 Printed = tuple[str, str, str, str]
 """What, where from, its value and its unit."""
@@ -98,7 +98,7 @@ def _print_quantities(scene: derive.Handle, needed: AbstractSet[str]) -> None:
         if not each or name not in each[0]:  # others that are sought, one of which rests on it
             values[name] = example(low, high, name if q.is_quaternion else "")
     print_rows(table)
-    each_set = (f"{name}={x}" for name, x in fulfilling(scene.library, values).items())
+    each_set = (f"{name}={x}" for name, x in held_example(scene.library, values).items())
     command = ["derive", "solve", scene.source, "--set", *each_set]
     console.print(f"\nfor example: {shlex.join(command)}", highlight=False, soft_wrap=True)
 

@@ -53,7 +53,7 @@ def start_on_constraints(
     return dict(given) | {n: float(there[names.index(n)]) for n in moved}, doubts
 
 
-def fulfilling(library: Library, given: Mapping[str, str]) -> dict[str, str]:
+def held_example(library: Library, given: Mapping[str, str]) -> dict[str, str]:
     """Return values as text, those of a state that does not fulfil the constraints changed so."""
     brings = library.mechanism.held.onto
     names = [c for q in library.vocabulary.given() for c in q.components]
