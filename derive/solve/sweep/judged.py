@@ -116,7 +116,7 @@ def gap_between(plan: SweepPlan, states: Sequence[Quantity], one: Endings, fine:
         if k.how in EXTREMES and k.component in rows:
             off = np.abs(one.columns[k.column] - fine.columns[k.column]) / size[rows[k.component]]
             worst.append(float(np.max(off[np.isfinite(off) & ~differs], initial=0.0)))
-    many = sum(not how.startswith(REFUSED) for how in fine.ended)
+    many = int(np.count_nonzero([not how.startswith(REFUSED) for how in fine.ended]))
     astray = frozenset(np.flatnonzero((fine.ended == ASTRAY) & ~differs).tolist())
     return Gap(max(worst), int(differs.sum()), many, astray)
 
