@@ -60,7 +60,7 @@ def test_parts_that_are_lost_are_missed(monkeypatch: Any) -> None:
     """Where carts of more than the mean mass are forgotten, samples find what is not proved."""
     whole = made.Walk._cells
 
-    def lighter(of: made.Walk, place: int, pieces: int) -> made.Cells:
+    def lighter(of: made.Walk, place: int, pieces: int) -> made.Slivers:
         cells = whole(of, place, pieces)
         (low, high), k = cells.whole, cells.names.index("M")
         high[k] = (low[k] + high[k]) / 2

@@ -10,13 +10,13 @@ from flint import arb, ctx
 from derive.program.precision import F32
 from derive.verify.operators import Column
 from derive.verify.proved import forms
-from derive.verify.proved.forms import Form, plain, side
+from derive.verify.proved.forms import Affine, plain, side
 from derive.verify.proved.ranges import Interval, half_unit
 from derive.verify.proved.sphere import UNIT, sides
 
 BITS = 200
 COUNT = 300
-MADE: dict[str, tuple[Callable[..., Form], Callable[..., Any]]] = {
+MADE: dict[str, tuple[Callable[..., Affine], Callable[..., Any]]] = {
     "sum": (lambda a, b, *_: forms.sum_of_forms(a, b), lambda x, y: x + y),
     "difference": (lambda a, b, *_: forms.difference(a, b), lambda x, y: x - y),
     "product": (lambda a, b, *_: forms.product(a, b), lambda x, y: x * y),
@@ -65,9 +65,9 @@ def test_a_form_holds_what_is_in_its_boxes_and_with_half_its_rest_does_not(
     assert escapes(name) == 0
     made, exactly = MADE[name]
 
-    def halved(*given: Any) -> Form:
+    def halved(*given: Any) -> Affine:
         form = made(*given)
-        return Form(form.middle, form.parts, form.rest * (0.0 if name in ROUNDED else 0.5))
+        return Affine(form.middle, form.parts, form.rest * (0.0 if name in ROUNDED else 0.5))
 
     monkeypatch.setitem(MADE, name, (halved, exactly))
     assert escapes(name) > 0

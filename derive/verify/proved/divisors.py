@@ -134,7 +134,7 @@ class Walk:
         low, high = cells.ranges(*cells.whole)
         return float(low.min()), float(high.max())
 
-    def _cells(self, place: int, pieces: int) -> "Cells":
+    def _cells(self, place: int, pieces: int) -> "Slivers":
         """Return what looks at parts of the box for one value."""
         of = traits(pruned(self.steps, [place]), self.precision, self.quaternions)
         names = tuple(s.name for s in of.trace.steps if s.name)
@@ -147,7 +147,7 @@ class Walk:
             low, high = (np.repeat(x, len(edges) - 1, axis=1) for x in (low, high))
             low[k], high[k] = np.tile(edges[:-1], count), np.tile(edges[1:], count)
         whole = tuple(tuple(map(names.index, each)) for each in of.quaternions)
-        return Cells(of, names, (low, high), whole)
+        return Slivers(of, names, (low, high), whole)
 
     def _away_from_zero(self, place: int) -> tuple[float, float] | None:
         """Return the range of a value that is found to keep one sign, None if it is not."""
@@ -169,7 +169,7 @@ class Walk:
 
 
 @dataclass(frozen=True)
-class Cells:
+class Slivers:
     """Parts of a box, and the range of one value in them."""
 
     of: Traits

@@ -14,7 +14,7 @@ import numpy as np
 from derive.program.arithmetic import rounded
 from derive.program.own_sine import FITTED
 from derive.verify.operators import Column
-from derive.verify.proved.forms import Form, fitted, plain, widened
+from derive.verify.proved.forms import Affine, fitted, plain, widened
 from derive.verify.proved.lengths import UPWARDS, squared_length, tightened, within
 from derive.verify.proved.meant import exactly, formed
 from derive.verify.proved.multiples import squares
@@ -56,7 +56,7 @@ class Enclosed:
 
     traits: Traits
     ranges: list[Interval]
-    forms: list[Form]
+    forms: list[Affine]
     errors: list[Column]
     own: list[Column | None]
     blamed: Column
@@ -146,7 +146,7 @@ def _u(of: Traits) -> float:
 
 def _made(
     found: Enclosed, index: int, step: Operation
-) -> tuple[Interval, Form, Column, Column | None]:
+) -> tuple[Interval, Affine, Column, Column | None]:
     """Return the range and form of an operation's value, its error in pairs, its own in floats."""
     of = found.traits
     each, forms = [found.ranges[o] for o in step.operands], [found.forms[o] for o in step.operands]

@@ -19,7 +19,7 @@ LEAST = 1e-290
 
 
 @dataclass(frozen=True)
-class Form:
+class Affine:
     """Values, a column a box; ``parts`` by symbol."""
 
     middle: Column
@@ -43,68 +43,68 @@ class Form:
         return np.asarray(np.abs(self.middle) + self.spread)
 
 
-def plain(a: Interval, symbols: int) -> Form:
+def plain(a: Interval, symbols: int) -> Affine:
     """Return a range, of which nothing is known but its ends."""
     parts = np.broadcast_to(0.0, (symbols, *a[0].shape))
     if a[0] is a[1]:
-        return Form(a[0], parts, np.zeros_like(a[0]))
+        return Affine(a[0], parts, np.zeros_like(a[0]))
     middle = (a[0] + a[1]) / 2
     rest = np.maximum(a[1] - middle, middle - a[0])
     rest = rest + (np.abs(a[0]) + np.abs(a[1])) * LOST
-    return Form(middle, parts, np.where(a[0] == a[1], 0.0, rest))
+    return Affine(middle, parts, np.where(a[0] == a[1], 0.0, rest))
 
 
-def side(a: Interval, symbol: int, symbols: int) -> Form:
+def side(a: Interval, symbol: int, symbols: int) -> Affine:
     """Return the side of a box, which has a symbol of its own."""
     made = plain(a, symbols)
     parts = made.parts.copy()
     parts[symbol] = made.rest
-    return Form(made.middle, parts, np.zeros_like(made.rest))
+    return Affine(made.middle, parts, np.zeros_like(made.rest))
 
 
-def sum_of_forms(a: Form, b: Form) -> Form:
+def sum_of_forms(a: Affine, b: Affine) -> Affine:
     """Return a + b."""
-    made = Form(a.middle + b.middle, a.parts + b.parts, a.rest + b.rest)
+    made = Affine(a.middle + b.middle, a.parts + b.parts, a.rest + b.rest)
     return widened(made, LOST * made.size)
 
 
-def opposite(a: Form) -> Form:
+def opposite(a: Affine) -> Affine:
     """Return -a."""
-    return Form(-a.middle, -a.parts, a.rest)
+    return Affine(-a.middle, -a.parts, a.rest)
 
 
-def difference(a: Form, b: Form) -> Form:
+def difference(a: Affine, b: Affine) -> Affine:
     """Return a - b."""
     return sum_of_forms(a, opposite(b))
 
 
-def product(a: Form, b: Form) -> Form:
+def product(a: Affine, b: Affine) -> Affine:
     """Return a b."""
     over = a.spread, b.spread
     sizes = np.abs(a.middle) + over[0], np.abs(b.middle) + over[1]
     rest = np.abs(a.middle) * b.rest + np.abs(b.middle) * a.rest + over[0] * over[1]
     parts = a.middle * b.parts + b.middle * a.parts
     lost = LOST * sizes[0] * sizes[1] + LEAST * ((sizes[0] > 0) & (sizes[1] > 0))
-    return Form(a.middle * b.middle, parts, rest + lost)
+    return Affine(a.middle * b.middle, parts, rest + lost)
 
 
-def square(a: Form) -> Form:
+def square(a: Affine) -> Affine:
     """Return a^2: what is of the second order is not below zero."""
     over = a.spread
     half = over * over / 2
     rest = 2 * np.abs(a.middle) * a.rest + half + LOST * (np.abs(a.middle) + over) ** 2 + LEAST
-    return Form(a.middle * a.middle + half, 2 * a.middle * a.parts, rest)
+    return Affine(a.middle * a.middle + half, 2 * a.middle * a.parts, rest)
 
 
-def quotient(a: Form, b: Form, of: Interval) -> Form:
+def quotient(a: Affine, b: Affine, of: Interval) -> Affine:
     """Return a / b, b within a range too: the quotient of middles, and what is left over b."""
     share = np.where(b.middle != 0, a.middle / np.where(b.middle != 0, b.middle, 1.0), 0.0)
-    whole = Form(share, np.zeros_like(a.parts), np.zeros_like(a.rest))
+    whole = Affine(share, np.zeros_like(a.parts), np.zeros_like(a.rest))
     left = difference(a, product(whole, b))
     return sum_of_forms(whole, product(left, inverse_form(b, of)))
 
 
-def inverse_form(a: Form, of: Interval) -> Form:
+def inverse_form(a: Affine, of: Interval) -> Affine:
     """Return 1/a, a within a range too; nothing is known of it if that may be zero."""
     low, high = of
     ends = inverse(of)
@@ -115,7 +115,7 @@ def inverse_form(a: Form, of: Interval) -> Form:
     return _line(a, slope, middle, over, greatest(ends))
 
 
-def root_form(a: Form, of: Interval) -> Form:
+def root_form(a: Affine, of: Interval) -> Affine:
     """Return the root of a, a within a range too that is not below zero."""
     low, high = root_of(of)
     low, high = low * (1 - LOST), high * (1 + LOST)
@@ -124,7 +124,7 @@ def root_form(a: Form, of: Interval) -> Form:
         return _line(a, slope, (low + high) / 4, low * high * slope, high)
 
 
-def wave_form(a: Form, of: Interval, which: int) -> Form:
+def wave_form(a: Affine, of: Interval, which: int) -> Affine:
     """Return sines (0) or cosines (1) of a, a within a range too."""
     middle = (of[0] + of[1]) / 2
     reach = np.maximum(of[1] - middle, middle - of[0])
@@ -136,29 +136,29 @@ def wave_form(a: Form, of: Interval, which: int) -> Form:
     return _line(a, slope, base - bent, base + bent, 1.0 + np.abs(middle) + reach)
 
 
-def _line(a: Form, slope: Column, first: Column, second: Column, size: Column) -> Form:
+def _line(a: Affine, slope: Column, first: Column, second: Column, size: Column) -> Affine:
     """Return a by a slope, plus anything between two numbers; ``size`` is of all that is met."""
     middle = (first + second) / 2
     rest = np.abs(second - first) / 2 + np.abs(slope) * a.rest
     over = size + np.abs(middle) + np.abs(slope) * a.size
-    return Form(slope * a.middle + middle, slope * a.parts, rest + LOST * over + LEAST)
+    return Affine(slope * a.middle + middle, slope * a.parts, rest + LOST * over + LEAST)
 
 
-def widened(a: Form, by: Column | None) -> Form:
+def widened(a: Affine, by: Column | None) -> Affine:
     """Return a with so much more on either side."""
-    return a if by is None else Form(a.middle, a.parts, a.rest + by)
+    return a if by is None else Affine(a.middle, a.parts, a.rest + by)
 
 
-def chosen(a: Form, b: Form, where: Column) -> Form:
+def chosen(a: Affine, b: Affine, where: Column) -> Affine:
     """Return the first where something is true, elsewhere the second."""
-    return Form(
+    return Affine(
         np.where(where, a.middle, b.middle),
         np.where(where, a.parts, b.parts),
         np.where(where, a.rest, b.rest),
     )
 
 
-def fitted(a: Form, of: Interval) -> Form:
+def fitted(a: Affine, of: Interval) -> Affine:
     """Return a, or its range alone where that says more than all that a form leaves open."""
     half = (of[1] - of[0]) / 2
     fits = a.rest <= half

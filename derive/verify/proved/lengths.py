@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from derive.verify.operators import Column
-from derive.verify.proved.forms import Form, plain, product, widened
+from derive.verify.proved.forms import Affine, plain, product, widened
 from derive.verify.proved.meant import exactly, formed
 from derive.verify.proved.multiples import UNIT_QUATERNION
 from derive.verify.proved.ranges import Interval, greatest, outward, times
@@ -23,13 +23,13 @@ def squared_length(
     of: Traits,
     index: int,
     ranges: Sequence[Interval],
-    forms: Sequence[Form],
+    forms: Sequence[Affine],
     own: Sequence[Column | None],
-) -> tuple[Interval, Form, Column]:
+) -> tuple[Interval, Affine, Column]:
     """Return the range and form of |q|^2 |p|^2, and how far rounding moves it on its way."""
     names, places = of.multiples[index]
     one = dict(zip(names, UNIT_QUATERNION, strict=True))
-    at = dict[int, tuple[Interval, Form]]()
+    at = dict[int, tuple[Interval, Affine]]()
     for n in places:
         step = of.trace.steps[n]
         if step.operator == "given":
@@ -71,7 +71,7 @@ def _off(
     return errors[places[-1]]
 
 
-def tightened(exact: Interval, form: Form) -> Interval:
+def tightened(exact: Interval, form: Affine) -> Interval:
     """Return what of a range a form leaves."""
     ends = form.ends
     low, high = np.fmax(exact[0], ends[0]), np.fmin(exact[1], ends[1])

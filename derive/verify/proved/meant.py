@@ -6,7 +6,7 @@ import numpy as np
 
 from derive.verify.operators import Column
 from derive.verify.proved.forms import (
-    Form,
+    Affine,
     chosen,
     difference,
     opposite,
@@ -102,9 +102,9 @@ def formed(
     index: int,
     step: Operation,
     each: Sequence[Interval],
-    forms: Sequence[Form],
+    forms: Sequence[Affine],
     exact: Interval,
-) -> Form:
+) -> Affine:
     """Return an operation's form without rounding, its operands' and its own range known."""
     if step.operator == "mul" and step.operands[0] == step.operands[1]:
         return square(forms[0])
@@ -130,7 +130,7 @@ def decided(kind: str, each: Sequence[Interval]) -> tuple[Column, Column]:
     return (below, above) if kind == "least" else (above, below)
 
 
-FORMED: Mapping[str, Callable[[Sequence[Form], Sequence[Interval]], Form]] = {
+FORMED: Mapping[str, Callable[[Sequence[Affine], Sequence[Interval]], Affine]] = {
     "add": lambda a, _: sum_of_forms(a[0], a[1]),
     "sub": lambda a, _: difference(a[0], a[1]),
     "mul": lambda a, _: product(a[0], a[1]),

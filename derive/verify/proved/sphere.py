@@ -8,7 +8,7 @@ import numpy as np
 
 from derive.verify.operators import Column
 from derive.verify.proved.forms import (
-    Form,
+    Affine,
     chosen,
     difference,
     opposite,
@@ -89,7 +89,7 @@ def sides(
     boxes: Mapping[str, Interval],
     quaternions: Sequence[Sequence[str]],
     shell: tuple[float, float],
-) -> dict[str, Form]:
+) -> dict[str, Affine]:
     """Return the forms of what is given in boxes, a symbol for each side that has a width.
 
     The largest component of a quaternion follows from the others', where that says more.
@@ -103,12 +103,12 @@ def sides(
 
 
 def _on_the_sphere(
-    each: Mapping[str, tuple[Interval, Form]], shell: tuple[float, float]
-) -> dict[str, Form]:
+    each: Mapping[str, tuple[Interval, Affine]], shell: tuple[float, float]
+) -> dict[str, Affine]:
     """Return the forms of a quaternion's components, of which one may follow from the others."""
     boxes = [ends for ends, _ in each.values()]
     least = np.array([np.minimum(np.abs(a), np.abs(b)) * (a * b > 0) for a, b in boxes])
-    largest, made = np.argmax(least, axis=0), dict[str, Form]()
+    largest, made = np.argmax(least, axis=0), dict[str, Affine]()
     for k, (name, (ends, form)) in enumerate(each.items()):
         others = [square(f) for n, (_, f) in each.items() if n != name]
         unit = tuple(np.full_like(ends[0], end) for end in shell)
