@@ -16,6 +16,7 @@ from derive.program.program import Program
 from derive.program.run import numbers_of, run_lines
 from derive.verify.columns import arithmetics, supplied
 from derive.verify.draw import Dice, Sampled, drawn
+from derive.verify.operators import Column
 from derive.verify.proved.divisors import Divisor
 from derive.verify.proved.seen import by_component
 
@@ -31,7 +32,7 @@ def escaped(
     rows = drawn(of, Dice(f"derive: {library.scene.name} told {program.name}"), TRIED)
     ends = np.where(rows > (of.lows + of.highs)[:, None] / 2, of.highs[:, None], of.lows[:, None])
     rows[:, 1::2] = np.where(np.isfinite(ends), ends, rows)[:, 1::2]
-    at = supplied(of.setup, by_component(of, rows), by)
+    at = supplied(of.setup, by_component(of, _floats_of_the_ranges(of, rows)), by)
     known = dict(at.own) | numbers_of(program, by.own)
     with np.errstate(all="ignore"):
         run_lines(program.ops, by.own, known)
@@ -41,6 +42,13 @@ def escaped(
             is_between = f"{divisor.name} is {found.min():g} .. {found.max():g} at samples"
             return f"{is_between}, beyond what is proved, {divisor.low:g} .. {divisor.high:g}"
     return ""
+
+
+def _floats_of_the_ranges(of: Sampled, rows: Column) -> Column:
+    """Return values as floats; what rounding brought beyond an end is the float before it."""
+    own: Column = rows.astype(of.precision.dtype)
+    own = np.where(own > of.highs[:, None], np.nextafter(own, -np.inf), own)
+    return np.where(own < of.lows[:, None], np.nextafter(own, np.inf), own).astype(rows.dtype)
 
 
 def with_ranges(text: str, symbol: str, ranges: Sequence[Divisor]) -> str:

@@ -10,18 +10,18 @@ from flint import arb, ctx
 from derive.program.precision import F32
 from derive.verify.operators import Column
 from derive.verify.proved import forms
-from derive.verify.proved.forms import Affine, plain, side
+from derive.verify.proved.forms import Affine, plain_form, side_form
 from derive.verify.proved.ranges import Interval, half_unit
-from derive.verify.proved.sphere import UNIT, sides
+from derive.verify.proved.sphere import UNIT, forms_of_sides
 
 BITS = 200
 COUNT = 300
 MADE: dict[str, tuple[Callable[..., Affine], Callable[..., Any]]] = {
     "sum": (lambda a, b, *_: forms.sum_of_forms(a, b), lambda x, y: x + y),
-    "difference": (lambda a, b, *_: forms.difference(a, b), lambda x, y: x - y),
+    "difference": (lambda a, b, *_: forms.difference_of_forms(a, b), lambda x, y: x - y),
     "product": (lambda a, b, *_: forms.product(a, b), lambda x, y: x * y),
-    "square": (lambda a, *_: forms.square(a), lambda x, _: x * x),
-    "quotient": (lambda a, b, _, of: forms.quotient(a, b, of), lambda x, y: x / y),
+    "square": (lambda a, *_: forms.square_form(a), lambda x, _: x * x),
+    "quotient": (lambda a, b, _, of: forms.quotient_form(a, b, of), lambda x, y: x / y),
     "root": (lambda _, b, __, of: forms.root_form(b, of), lambda _, y: y.sqrt()),
     "sine": (lambda a, _, of, __: forms.wave_form(a, of, 0), lambda x, _: x.sin()),
     "cosine": (lambda a, _, of, __: forms.wave_form(a, of, 1), lambda x, _: x.cos()),
@@ -40,7 +40,7 @@ def escapes(name: str) -> int:
     """Count the points of boxes at which a form does not hold the value."""
     dice, (made, exactly) = np.random.default_rng(len(name)), MADE[name]
     first, second = boxes(dice)
-    a, b = side(first, 0, 2), side(second, 1, 2)
+    a, b = side_form(first, 0, 2), side_form(second, 1, 2)
     found, out = made(a, b, first, second), 0
     for share in (0.0, 1.0, *dice.random((4, 2, COUNT))):
         at = np.broadcast_to(share, (2, COUNT))
@@ -79,9 +79,11 @@ ROUNDED = ("sum", "difference")
 
 def test_what_is_the_same_falls_out() -> None:
     of = np.array([1.0]), np.array([2.0])
-    x = side(of, 0, 1)
-    assert forms.difference(x, x).size[0] < 1e-12
-    assert forms.difference(plain(of, 1), plain(of, 1)).size[0] == pytest.approx(1.0)
+    x = side_form(of, 0, 1)
+    assert forms.difference_of_forms(x, x).size[0] < 1e-12
+    assert forms.difference_of_forms(plain_form(of, 1), plain_form(of, 1)).size[0] == pytest.approx(
+        1.0
+    )
 
 
 @pytest.mark.parametrize("shell", [UNIT, (0.98, 1.01)])
@@ -92,7 +94,7 @@ def test_the_largest_component_of_a_quaternion_follows_from_the_others(
     dice, names = np.random.default_rng(1), ("w", "x", "y", "z")
     ends = {n: (np.array([low]), np.array([low + 0.1]))
             for n, low in zip(names, (0.77, -0.35, 0.3, -0.45), strict=True)}  # fmt: skip
-    found = sides(ends, [names], shell)
+    found = forms_of_sides(ends, [names], shell)
     assert np.any(found["w"].parts[1:] != 0)
     points = np.array([a + (b - a) * dice.random(4000) for a, b in ends.values()])
     square = (points**2).sum(axis=0)

@@ -11,7 +11,7 @@ from derive.verify.proved import lengths, waist
 from derive.verify.proved.bounds import WORK, Proof, assumed, bounds_of, cutting
 from derive.verify.proved.cut import Cutting
 from derive.verify.proved.enclosed import enclosed
-from derive.verify.proved.multiples import cone, is_multiple, squares
+from derive.verify.proved.multiples import cone, is_multiple, squares_in
 from derive.verify.proved.seen import Search
 from derive.verify.proved.sphere import UNIT
 from derive.verify.scale import measured_outputs
@@ -59,7 +59,7 @@ def lengths_at_points(at: Cutting) -> tuple[Any, Any]:
     each = start[list(places)]
     start[list(places)] = each * np.sqrt(dice.choice(UNIT, 2000) / (each**2).sum(axis=0))
     found = enclosed(at.traits, at.ranges(start, start), 2000)
-    own = [found.ranges[n] for n in squares(at.traits.trace.steps, index)]
+    own = [found.ranges[n] for n in squares_in(at.traits.trace.steps, index)]
     return sum(((a + b) / 2) ** 2 for a, b in own), (low[0], high[0])
 
 
@@ -83,7 +83,7 @@ def after_and_before(at: Cutting, share: float) -> tuple[Any, Any]:
     assert tail is not None
     points = at.peaks.points
     found = enclosed(at.traits, at.ranges(points, points), points.shape[1])
-    own = [found.ranges[n] for n in squares(at.traits.trace.steps, index)]
+    own = [found.ranges[n] for n in squares_in(at.traits.trace.steps, index)]
     by_name = {f"turned {n}": (a + b) / 2 for n, (a, b) in enumerate(own)}
     return tail._certain(np.array([by_name[n] for n in tail.box.names])), at._certain(points)
 

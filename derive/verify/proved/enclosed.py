@@ -14,10 +14,10 @@ import numpy as np
 from derive.program.arithmetic import rounded
 from derive.program.own_sine import FITTED
 from derive.verify.operators import Column
-from derive.verify.proved.forms import Affine, fitted, plain, widened
-from derive.verify.proved.lengths import UPWARDS, squared_length, tightened, within
+from derive.verify.proved.forms import Affine, fitted_form, plain_form, widened_form
+from derive.verify.proved.lengths import UPWARDS, of_no_larger_square, squared_length, tightened
 from derive.verify.proved.meant import exactly, formed
-from derive.verify.proved.multiples import squares
+from derive.verify.proved.multiples import squares_in
 from derive.verify.proved.ranges import (
     Interval,
     column,
@@ -27,7 +27,7 @@ from derive.verify.proved.ranges import (
     outward,
     unit,
 )
-from derive.verify.proved.sphere import sides
+from derive.verify.proved.sphere import forms_of_sides
 from derive.verify.proved.traits import COMPARED, Traits, choice_name
 from derive.verify.proved.unfolded import Operation
 
@@ -67,14 +67,14 @@ def enclosed(of: Traits, boxes: Mapping[str, Interval], count: int) -> Enclosed:
     """Return the values of all places over boxes, the ranges of what is given by name."""
     found = Enclosed(of, [], [], [], [], np.full(count, -1), np.zeros(count, bool))
     own_boxes = {s.name: boxes[s.name] for s in of.trace.steps if s.name}
-    known = sides(own_boxes, of.quaternions, of.shell)
+    known = forms_of_sides(own_boxes, of.quaternions, of.shell)
     symbols = next((len(form.parts) for form in known.values()), 0)
     for index, step in enumerate(of.trace.steps):
         if step.operands:
             value, form, error, own = _made(found, index, step)
         else:
             value, error, own = given(of, step, boxes, count)
-            form = widened(known.get(step.name) or plain(value, symbols), own)
+            form = widened_form(known.get(step.name) or plain_form(value, symbols), own)
         if choice_name(index) in boxes:
             value = _decided(found, value, boxes[choice_name(index)])
         found.ranges.append(value)
@@ -152,19 +152,19 @@ def _made(
     each, forms = [found.ranges[o] for o in step.operands], [found.forms[o] for o in step.operands]
     exact = exactly(of, index, step, each)
     if step.operator in (*COMPARED, "both", "either"):
-        return exact, plain(exact, len(forms[0].parts)), np.zeros(len(found.blamed)), None
+        return exact, plain_form(exact, len(forms[0].parts)), np.zeros(len(found.blamed)), None
     form = formed(of, index, step, each, forms, exact)
     if index in of.multiples:
         value, form, off = squared_length(of, index, found.ranges, found.forms, found.own)
         exact = np.maximum(exact[0], value[0]), np.minimum(exact[1], value[1])
-        for n in squares(of.trace.steps, index):
-            found.ranges[n] = within(found.ranges[n], exact[1] + off)
+        for n in squares_in(of.trace.steps, index):
+            found.ranges[n] = of_no_larger_square(found.ranges[n], exact[1] + off)
     elif index in of.lengths:
         ends = of.shell if of.carried else BROAD
         exact = np.clip(exact[0], *ends), np.clip(exact[1], *ends)
     exact = tightened(exact, form)
     error, own = _errors(found, index, step, exact)
-    return _widened(exact, own), widened(fitted(form, exact), own), error, own
+    return _widened(exact, own), widened_form(fitted_form(form, exact), own), error, own
 
 
 def _errors(

@@ -43,7 +43,7 @@ class Affine:
         return np.asarray(np.abs(self.middle) + self.spread)
 
 
-def plain(a: Interval, symbols: int) -> Affine:
+def plain_form(a: Interval, symbols: int) -> Affine:
     """Return a range, of which nothing is known but its ends."""
     parts = np.broadcast_to(0.0, (symbols, *a[0].shape))
     if a[0] is a[1]:
@@ -54,9 +54,9 @@ def plain(a: Interval, symbols: int) -> Affine:
     return Affine(middle, parts, np.where(a[0] == a[1], 0.0, rest))
 
 
-def side(a: Interval, symbol: int, symbols: int) -> Affine:
+def side_form(a: Interval, symbol: int, symbols: int) -> Affine:
     """Return the side of a box, which has a symbol of its own."""
-    made = plain(a, symbols)
+    made = plain_form(a, symbols)
     parts = made.parts.copy()
     parts[symbol] = made.rest
     return Affine(made.middle, parts, np.zeros_like(made.rest))
@@ -65,7 +65,7 @@ def side(a: Interval, symbol: int, symbols: int) -> Affine:
 def sum_of_forms(a: Affine, b: Affine) -> Affine:
     """Return a + b."""
     made = Affine(a.middle + b.middle, a.parts + b.parts, a.rest + b.rest)
-    return widened(made, LOST * made.size)
+    return widened_form(made, LOST * made.size)
 
 
 def opposite(a: Affine) -> Affine:
@@ -73,7 +73,7 @@ def opposite(a: Affine) -> Affine:
     return Affine(-a.middle, -a.parts, a.rest)
 
 
-def difference(a: Affine, b: Affine) -> Affine:
+def difference_of_forms(a: Affine, b: Affine) -> Affine:
     """Return a - b."""
     return sum_of_forms(a, opposite(b))
 
@@ -88,7 +88,7 @@ def product(a: Affine, b: Affine) -> Affine:
     return Affine(a.middle * b.middle, parts, rest + lost)
 
 
-def square(a: Affine) -> Affine:
+def square_form(a: Affine) -> Affine:
     """Return a^2: what is of the second order is not below zero."""
     over = a.spread
     half = over * over / 2
@@ -96,11 +96,11 @@ def square(a: Affine) -> Affine:
     return Affine(a.middle * a.middle + half, 2 * a.middle * a.parts, rest)
 
 
-def quotient(a: Affine, b: Affine, of: Interval) -> Affine:
+def quotient_form(a: Affine, b: Affine, of: Interval) -> Affine:
     """Return a / b, b within a range too: the quotient of middles, and what is left over b."""
     share = np.where(b.middle != 0, a.middle / np.where(b.middle != 0, b.middle, 1.0), 0.0)
     whole = Affine(share, np.zeros_like(a.parts), np.zeros_like(a.rest))
-    left = difference(a, product(whole, b))
+    left = difference_of_forms(a, product(whole, b))
     return sum_of_forms(whole, product(left, inverse_form(b, of)))
 
 
@@ -144,12 +144,12 @@ def _line(a: Affine, slope: Column, first: Column, second: Column, size: Column)
     return Affine(slope * a.middle + middle, slope * a.parts, rest + LOST * over + LEAST)
 
 
-def widened(a: Affine, by: Column | None) -> Affine:
+def widened_form(a: Affine, by: Column | None) -> Affine:
     """Return a with so much more on either side."""
     return a if by is None else Affine(a.middle, a.parts, a.rest + by)
 
 
-def chosen(a: Affine, b: Affine, where: Column) -> Affine:
+def chosen_form(a: Affine, b: Affine, where: Column) -> Affine:
     """Return the first where something is true, elsewhere the second."""
     return Affine(
         np.where(where, a.middle, b.middle),
@@ -158,8 +158,8 @@ def chosen(a: Affine, b: Affine, where: Column) -> Affine:
     )
 
 
-def fitted(a: Affine, of: Interval) -> Affine:
+def fitted_form(a: Affine, of: Interval) -> Affine:
     """Return a, or its range alone where that says more than all that a form leaves open."""
     half = (of[1] - of[0]) / 2
     fits = a.rest <= half
-    return a if fits.all() else chosen(a, plain(of, len(a.parts)), fits)
+    return a if fits.all() else chosen_form(a, plain_form(of, len(a.parts)), fits)

@@ -4,11 +4,13 @@ Along the way from true to computed values it is off by what rounding has made o
 """
 
 from collections.abc import Sequence
+from functools import reduce
+from operator import add
 
 import numpy as np
 
 from derive.verify.operators import Column
-from derive.verify.proved.forms import Affine, plain, product, widened
+from derive.verify.proved.forms import Affine, plain_form, product, widened_form
 from derive.verify.proved.meant import exactly, formed
 from derive.verify.proved.multiples import UNIT_QUATERNION
 from derive.verify.proved.ranges import Interval, greatest, outward, times
@@ -34,7 +36,7 @@ def squared_length(
         step = of.trace.steps[n]
         if step.operator == "given":
             whole = (np.full_like(ranges[0][0], float(one[step.name])),) * 2
-            at[n] = whole, plain(whole, len(forms[0].parts))
+            at[n] = whole, plain_form(whole, len(forms[0].parts))
             continue
         operands = [at.get(o) or (ranges[o], forms[o]) for o in step.operands]
         each, own_forms = [a for a, _ in operands], [f for _, f in operands]
@@ -45,7 +47,7 @@ def squared_length(
     unit = (np.full_like(value[0], UNIT[0]), np.full_like(value[0], UNIT[1]))
     off = _off(of, places, ranges, own)
     low, high = times(value, unit)
-    made = widened(product(form, plain(unit, len(form.parts))), off)
+    made = widened_form(product(form, plain_form(unit, len(form.parts))), off)
     return outward(low - off, high + off), made, off
 
 
@@ -65,7 +67,7 @@ def _off(
             first, second = (greatest(ranges[o]) for o in step.operands)
             error = first * came[1] + second * came[0] + came[0] * came[1]
         else:
-            error = sum(came, start=nothing)
+            error = reduce(add, came, nothing)
         rounding = own[n] if n < len(own) else None
         errors[n] = (error if rounding is None else error + rounding) * UPWARDS
     return errors[places[-1]]
@@ -79,7 +81,7 @@ def tightened(exact: Interval, form: Affine) -> Interval:
     return np.where(holds, low, exact[0]), np.where(holds, high, exact[1])
 
 
-def within(a: Interval, square: Column) -> Interval:
+def of_no_larger_square(a: Interval, square: Column) -> Interval:
     """Return what of a range has no larger square."""
     end = np.sqrt(square) * UPWARDS
     return np.maximum(a[0], -end), np.minimum(a[1], end)

@@ -7,14 +7,14 @@ import numpy as np
 from derive.verify.operators import Column
 from derive.verify.proved.forms import (
     Affine,
-    chosen,
-    difference,
+    chosen_form,
+    difference_of_forms,
     opposite,
-    plain,
+    plain_form,
     product,
-    quotient,
+    quotient_form,
     root_form,
-    square,
+    square_form,
     sum_of_forms,
     wave_form,
 )
@@ -107,19 +107,19 @@ def formed(
 ) -> Affine:
     """Return an operation's form without rounding, its operands' and its own range known."""
     if step.operator == "mul" and step.operands[0] == step.operands[1]:
-        return square(forms[0])
+        return square_form(forms[0])
     kind = of.kinds[index] or step.operator
     if kind in FORMED:
         return FORMED[kind](forms, each)
-    whole = plain(exact, len(forms[0].parts))
+    whole = plain_form(exact, len(forms[0].parts))
     if kind == "abs":
         low, high = each[-1]
-        way = chosen(opposite(forms[-1]), whole, high <= 0)
-        return chosen(forms[-1], way, low >= 0)
+        way = chosen_form(opposite(forms[-1]), whole, high <= 0)
+        return chosen_form(forms[-1], way, low >= 0)
     if kind not in ("select", "least", "most"):
         return whole
     sure, never = decided(kind, each)
-    return chosen(forms[1], chosen(forms[2], whole, never), sure)
+    return chosen_form(forms[1], chosen_form(forms[2], whole, never), sure)
 
 
 def decided(kind: str, each: Sequence[Interval]) -> tuple[Column, Column]:
@@ -132,9 +132,9 @@ def decided(kind: str, each: Sequence[Interval]) -> tuple[Column, Column]:
 
 FORMED: Mapping[str, Callable[[Sequence[Affine], Sequence[Interval]], Affine]] = {
     "add": lambda a, _: sum_of_forms(a[0], a[1]),
-    "sub": lambda a, _: difference(a[0], a[1]),
+    "sub": lambda a, _: difference_of_forms(a[0], a[1]),
     "mul": lambda a, _: product(a[0], a[1]),
-    "div": lambda a, each: quotient(a[0], a[1], each[1]),
+    "div": lambda a, each: quotient_form(a[0], a[1], each[1]),
     "neg": lambda a, _: opposite(a[0]),
     "sqrt": lambda a, each: root_form(a[0], each[0]),
     "sin": lambda a, each: wave_form(a[0], each[0], 0),

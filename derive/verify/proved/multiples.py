@@ -18,14 +18,14 @@ FOLLOWED = ("add", "sub", "mul", "neg")
 """What q may go through."""
 
 
-def squares(steps: Sequence[Operation], index: int) -> list[int]:
+def squares_in(steps: Sequence[Operation], index: int) -> list[int]:
     """Return what a sum adds the squares of, nothing if it is no such sum."""
     step = steps[index]
     if step.operator == "mul" and step.operands[0] == step.operands[1]:
         return [step.operands[0]]
     if step.operator != "add":
         return []
-    each = [squares(steps, o) for o in step.operands]
+    each = [squares_in(steps, o) for o in step.operands]
     return [n for part in each for n in part] if all(each) else []
 
 

@@ -9,13 +9,13 @@ import numpy as np
 from derive.verify.operators import Column
 from derive.verify.proved.forms import (
     Affine,
-    chosen,
-    difference,
+    chosen_form,
+    difference_of_forms,
     opposite,
-    plain,
+    plain_form,
     root_form,
-    side,
-    square,
+    side_form,
+    square_form,
     sum_of_forms,
 )
 from derive.verify.proved.ranges import Interval
@@ -85,7 +85,7 @@ def _narrow(
     highs[place] = np.where(high < least, np.minimum(high, -least), high)
 
 
-def sides(
+def forms_of_sides(
     boxes: Mapping[str, Interval],
     quaternions: Sequence[Sequence[str]],
     shell: tuple[float, float],
@@ -95,8 +95,8 @@ def sides(
     The largest component of a quaternion follows from the others', where that says more.
     """
     wide = [n for n, (low, high) in boxes.items() if np.any(low < high)]
-    found = {n: side(boxes[n], k, len(wide)) for k, n in enumerate(wide)}
-    found |= {n: plain(ends, len(wide)) for n, ends in boxes.items() if n not in found}
+    found = {n: side_form(boxes[n], k, len(wide)) for k, n in enumerate(wide)}
+    found |= {n: plain_form(ends, len(wide)) for n, ends in boxes.items() if n not in found}
     for names in quaternions:
         found |= _on_the_sphere({n: (boxes[n], found[n]) for n in names}, shell)
     return found
@@ -110,12 +110,14 @@ def _on_the_sphere(
     least = np.array([np.minimum(np.abs(a), np.abs(b)) * (a * b > 0) for a, b in boxes])
     largest, made = np.argmax(least, axis=0), dict[str, Affine]()
     for k, (name, (ends, form)) in enumerate(each.items()):
-        others = [square(f) for n, (_, f) in each.items() if n != name]
+        others = [square_form(f) for n, (_, f) in each.items() if n != name]
         unit = tuple(np.full_like(ends[0], end) for end in shell)
-        left = difference(plain((unit[0], unit[1]), len(form.parts)), reduce(sum_of_forms, others))
+        left = difference_of_forms(
+            plain_form((unit[0], unit[1]), len(form.parts)), reduce(sum_of_forms, others)
+        )
         low, high = left.ends
         root = root_form(left, (np.maximum(low, 0.0), high))
-        root = chosen(root, opposite(root), ends[0] > 0)
+        root = chosen_form(root, opposite(root), ends[0] > 0)
         says = (largest == k) & (low > 0) & (root.rest < form.spread / 2)
-        made[name] = chosen(root, form, says)
+        made[name] = chosen_form(root, form, says)
     return made

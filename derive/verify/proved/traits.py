@@ -9,7 +9,7 @@ from types import MappingProxyType
 
 from derive.program.arithmetic import rounded
 from derive.program.precision import Precision
-from derive.verify.proved.multiples import cone, is_multiple, squares
+from derive.verify.proved.multiples import cone, is_multiple, squares_in
 from derive.verify.proved.sphere import UNIT
 from derive.verify.proved.unfolded import Operation, Unfolded
 
@@ -72,7 +72,7 @@ class Traits:
             return frozenset()
         rooted = {o for s in steps for o in s.operands[-1:] if s.operator in ("div", "sqrt")}
         rooted.update(self.trace.results)
-        return frozenset(n for n in rooted if len(squares(steps, n)) == 4)
+        return frozenset(n for n in rooted if len(squares_in(steps, n)) == 4)
 
     @cached_property
     def multiples(self) -> Mapping[int, tuple[Sequence[str], Sequence[int]]]:

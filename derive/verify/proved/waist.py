@@ -13,7 +13,7 @@ import numpy as np
 from derive.verify.proved.cut import Cells, Cutting, Region
 from derive.verify.proved.enclosed import enclosed
 from derive.verify.proved.lengths import UPWARDS
-from derive.verify.proved.multiples import squares
+from derive.verify.proved.multiples import squares_in
 from derive.verify.proved.slopes import shifts
 from derive.verify.proved.traits import Traits, choice_name, traits
 from derive.verify.proved.unfolded import Operation, Unfolded, pruned
@@ -44,7 +44,7 @@ def bounded(at: Cutting, known: Sequence[Cells] = ()) -> tuple[Cells, ...]:
 def waist(of: Traits) -> int | None:
     """Return the squared length of a quaternion that all results rest on alone, None if none is."""
     for index in of.multiples:
-        turned, rests = squares(of.trace.steps, index), list[bool]()
+        turned, rests = squares_in(of.trace.steps, index), list[bool]()
         for n, step in enumerate(of.trace.steps):
             own = step.operator == "given" or any(rests[o] for o in step.operands)
             rests.append(own and n not in turned)
@@ -56,7 +56,7 @@ def waist(of: Traits) -> int | None:
 def _head(at: Cutting, index: int) -> Cutting:
     """Return what bounds the components of the quaternion."""
     steps = at.traits.trace.steps
-    trace = pruned(steps, squares(steps, index))
+    trace = pruned(steps, squares_in(steps, index))
     of = traits(trace, at.traits.precision, at.traits.quaternions)
     return Cutting(of, _region(of, at.box), at.work // AHEAD, at.dice)
 
@@ -104,7 +104,7 @@ def _tail(
 ) -> Cutting | None:
     """Return what bounds results over parts of the sphere, None if there is no such."""
     steps, names = list(at.traits.trace.steps), [f"turned {n}" for n in range(len(most))]
-    for name, place in zip(names, squares(steps, index), strict=True):
+    for name, place in zip(names, squares_in(steps, index), strict=True):
         steps[place] = Operation("given", (), "given", name=name)
     trace = pruned(steps, at.traits.trace.results)
     of = traits(trace, at.traits.precision, [names], dict(zip(names, most, strict=True)))
