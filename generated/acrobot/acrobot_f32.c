@@ -98,6 +98,9 @@ static acrobot_pair_f32 acrobot_div_f32(acrobot_pair_f32 a, acrobot_pair_f32 b)
     return acrobot_add_f32(acrobot_add_f32(q1, q2), q3);
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int acrobot_setup_f32(float m_1, float m_2, float l_1, float c_1, float c_2, float I_1, float I_2,
     float g, acrobot_constants_f32 *constants)
 {

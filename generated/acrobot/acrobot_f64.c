@@ -98,6 +98,9 @@ static acrobot_pair_f64 acrobot_div_f64(acrobot_pair_f64 a, acrobot_pair_f64 b)
     return acrobot_add_f64(acrobot_add_f64(q1, q2), q3);
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int acrobot_setup_f64(double m_1, double m_2, double l_1, double c_1, double c_2, double I_1,
     double I_2, double g, acrobot_constants_f64 *constants)
 {

@@ -103,6 +103,9 @@ static cart_pendulum_pair_f32 cart_pendulum_div_f32(cart_pendulum_pair_f32 a, ca
     return cart_pendulum_add_f32(cart_pendulum_add_f32(q1, q2), q3);
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int cart_pendulum_setup_f32(float M, float m, float l, float I, float b, float g,
     cart_pendulum_constants_f32 *constants)
 {

@@ -27,7 +27,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 2ef913c257a7ae81.
+ * Body of these files: sha256 e50f7363d2af5bd3.
  */
 #ifndef CART_PENDULUM_F32_H
 #define CART_PENDULUM_F32_H
@@ -82,8 +82,6 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 23 operations on pairs.
- * On Cortex-M0+, -O2: 52126 to 54200 instructions, 1832 B of code, 592 B of stack.
- * On Cortex-M4F, -O2: 1066 instructions, 1444 B of code, 448 B of stack.
  */
 int cart_pendulum_setup_f32(float M, float m, float l, float I, float b, float g,
     cart_pendulum_constants_f32 *constants);
@@ -111,12 +109,10 @@ int cart_pendulum_setup_f32(float M, float m, float l, float I, float b, float g
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: x_rate 0 m/s (seen 0),
- *            x_dot_rate 1.9e-05 m/s^2 (seen 1.2e-05), theta_rate 0 rad/s (seen 0), theta_dot_rate
- *            8.3e-05 rad/s^2 (seen 5.8e-05); assumed: sines and cosines of our own within 0.79
+ *            x_dot_rate 1.8e-05 m/s^2 (seen 1.2e-05), theta_rate 0 rad/s (seen 0), theta_dot_rate
+ *            8.1e-05 rad/s^2 (seen 5.6e-05); assumed: sines and cosines of our own within 0.79
  *            ulp.
  * Cost: 1 add, 4 sub, 11 mul, 1 div, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 5627 to 6415 instructions, 760 B of code, 128 B of stack.
- * On Cortex-M4F, -O2: 130 to 131 instructions, 580 B of code, 60 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, rigid, strong_third_law, third_law.
  */
@@ -144,12 +140,10 @@ void cart_pendulum_state_rate_f32(const cart_pendulum_constants_f32 *constants, 
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: x_rate 0 m/s (seen 0),
- *            x_dot_rate 2.1e-05 m/s^2 (seen 1.2e-05), theta_rate 0 rad/s (seen 0), theta_dot_rate
- *            8.7e-05 rad/s^2 (seen 5.4e-05), jacobian 0.00016 (seen 7e-05); assumed: sines and
+ *            x_dot_rate 2e-05 m/s^2 (seen 1.3e-05), theta_rate 0 rad/s (seen 0), theta_dot_rate
+ *            8.7e-05 rad/s^2 (seen 6e-05), jacobian 0.00013 (seen 6e-05); assumed: sines and
  *            cosines of our own within 0.79 ulp.
  * Cost: 7 add, 2 sub, 27 mul, 1 div, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 7916 to 8786 instructions, 984 B of code, 160 B of stack.
- * On Cortex-M4F, -O2: 163 to 164 instructions, 712 B of code, 60 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, rigid, strong_third_law, third_law.
  */
@@ -157,10 +151,7 @@ void cart_pendulum_state_rate_jacobian_f32(const cart_pendulum_constants_f32 *co
     float x_dot, float theta, float theta_dot, float F, float *x_rate, float *x_dot_rate,
     float *theta_rate, float *theta_dot_rate, float jacobian[10]);
 
-/* The same, the whole matrix: 20 entries.
- * On Cortex-M0+, -O2: 7910 to 8731 instructions, 1004 B of code, 160 B of stack.
- * On Cortex-M4F, -O2: 174 to 175 instructions, 736 B of code, 60 B of stack.
- */
+/* The same, the whole matrix: 20 entries. */
 void cart_pendulum_state_rate_jacobian_dense_f32(const cart_pendulum_constants_f32 *constants,
     float x_dot, float theta, float theta_dot, float F, float *x_rate, float *x_dot_rate,
     float *theta_rate, float *theta_dot_rate, float jacobian[20]);
@@ -188,8 +179,6 @@ void cart_pendulum_state_rate_jacobian_dense_f32(const cart_pendulum_constants_f
  * Bound: proved, absolute, by rounding alone, on the whole ranges: mass_matrix 6e-08 (seen 6e-08),
  *            damping_matrix 0 (seen 0), stiffness_matrix 6e-08 (seen 6e-08).
  * Cost: no operations.
- * On Cortex-M0+, -O2: 20 to 21 instructions, 40 B of code, 12 B of stack.
- * On Cortex-M4F, -O2: 19 instructions, 56 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, rigid, strong_third_law, third_law.
  */
@@ -214,11 +203,9 @@ void cart_pendulum_linearised_f32(const cart_pendulum_constants_f32 *constants,
  * Error: median 0.64, largest 7.2 u of the largest product or sum in the equation (of energy;
  *            200000 samples of the ranges, 65536 searched from the worst); at 120 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: energy 2.8e-06 J (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: energy 2.7e-06 J (seen
  *            2.3e-06); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 3 add, 7 mul, 1 cos.
- * On Cortex-M0+, -O2: 4513 to 5409 instructions, 668 B of code, 112 B of stack.
- * On Cortex-M4F, -O2: 114 to 115 instructions, 520 B of code, 44 B of stack.
  * Rests on: A_is_G, axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass,
  *            rate_seen_from_N, rigid.
  */
@@ -245,11 +232,9 @@ void cart_pendulum_energy_f32(const cart_pendulum_constants_f32 *constants, floa
  * In this scene: rail = c/Delta
  * Error: median 0.85, largest 9.4 u of the largest product or sum in the equation (of rail; 200000
  *            samples of the ranges, 65536 searched from the worst); at 120 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: rail 2.3e-05 N (seen 9.7e-06);
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: rail 1.6e-05 N (seen 9.4e-06);
  *            assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 5 add, 3 sub, 18 mul, 1 div, 1 neg, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 6694 to 7532 instructions, 836 B of code, 120 B of stack.
- * On Cortex-M4F, -O2: 139 to 140 instructions, 620 B of code, 52 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, rigid, strong_third_law, third_law.
  */
@@ -277,12 +262,10 @@ void cart_pendulum_rail_f32(const cart_pendulum_constants_f32 *constants, float 
  *            largest product of what the step adds, by rounding alone (of x_dot_next; 200000
  *            samples of the ranges, 65536 searched from the worst); at 48 hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: x_next 1.6e-07 m (seen
- *            1.3e-07), x_dot_next 7.9e-07 m/s (seen 3.7e-07), theta_next 2.1e-07 rad (seen
- *            1.5e-07), theta_dot_next 3.3e-06 rad/s (seen 1.5e-06); assumed: sines and cosines of
+ *            1.3e-07), x_dot_next 7.4e-07 m/s (seen 3.6e-07), theta_next 2.1e-07 rad (seen
+ *            1.5e-07), theta_dot_next 3.2e-06 rad/s (seen 1.2e-06); assumed: sines and cosines of
  *            our own within 0.79 ulp.
  * Cost: 29 add, 16 sub, 78 mul, 4 div, 4 sin, 4 cos.
- * On Cortex-M0+, -O2: 27845 to 30959 instructions, 1756 B of code, 224 B of stack.
- * On Cortex-M4F, -O2: 533 to 537 instructions, 1152 B of code, 164 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, rigid, strong_third_law, third_law.
  */

@@ -103,6 +103,9 @@ static cart_pendulum_pair_f64 cart_pendulum_div_f64(cart_pendulum_pair_f64 a, ca
     return cart_pendulum_add_f64(cart_pendulum_add_f64(q1, q2), q3);
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int cart_pendulum_setup_f64(double M, double m, double l, double I, double b, double g,
     cart_pendulum_constants_f64 *constants)
 {

@@ -119,6 +119,9 @@ static _Bool centrifuge_gondola_less_f32(const centrifuge_gondola_pair_f32 a, co
     return (a.high < b.high) || ((a.high <= b.high) && (a.low < b.low));
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int centrifuge_gondola_setup_f32(float m, float I_xx, float I_yy, float I_zz, float I_xz, float e_x,
     float e_z, centrifuge_gondola_constants_f32 *constants)
 {

@@ -24,7 +24,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 fd772fd5d2e5253a.
+ * Body of these files: sha256 e83bc81b4fdf2001.
  */
 #ifndef CENTRIFUGE_GONDOLA_F32_H
 #define CENTRIFUGE_GONDOLA_F32_H
@@ -68,8 +68,6 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 23 operations on pairs.
- * On Cortex-M0+, -O2: 46535 to 48380 instructions, 1920 B of code, 680 B of stack.
- * On Cortex-M4F, -O2: 1025 instructions, 1404 B of code, 528 B of stack.
  */
 int centrifuge_gondola_setup_f32(float m, float I_xx, float I_yy, float I_zz, float I_xz, float e_x,
     float e_z, centrifuge_gondola_constants_f32 *constants);
@@ -94,11 +92,9 @@ int centrifuge_gondola_setup_f32(float m, float I_xx, float I_yy, float I_zz, fl
  *            (Omega x rho_i)   [lecture step acceleration_seen_from_axes]
  * Error: median 0.63, largest 18 u of the largest product or sum in the equation (of F; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8342 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: F 0.0056 N (seen 0.0034);
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: F 0.0054 N (seen 0.0034);
  *            assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 11 add, 16 sub, 48 mul, 3 sin, 3 cos.
- * On Cortex-M0+, -O2: 18512 to 20697 instructions, 1352 B of code, 208 B of stack.
- * On Cortex-M4F, -O2: 369 to 372 instructions, 844 B of code, 108 B of stack.
  * Rests on: axes_are_orthonormal, composed_turns, constant_mass, further_axes_are_right_handed,
  *            newton, rate_seen_from_N, third_law.
  */
@@ -128,8 +124,6 @@ void centrifuge_gondola_F_f32(const centrifuge_gondola_constants_f32 *constants,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: M 0.011 N m (seen 0.0027);
  *            assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 15 add, 18 sub, 56 mul, 3 sin, 3 cos.
- * On Cortex-M0+, -O2: 19988 to 22112 instructions, 1484 B of code, 216 B of stack.
- * On Cortex-M4F, -O2: 388 to 390 instructions, 920 B of code, 108 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N, rigid,
  *            strong_third_law, third_law.

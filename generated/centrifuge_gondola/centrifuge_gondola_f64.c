@@ -119,6 +119,9 @@ static _Bool centrifuge_gondola_less_f64(const centrifuge_gondola_pair_f64 a, co
     return (a.high < b.high) || ((a.high <= b.high) && (a.low < b.low));
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int centrifuge_gondola_setup_f64(double m, double I_xx, double I_yy, double I_zz, double I_xz,
     double e_x, double e_z, centrifuge_gondola_constants_f64 *constants)
 {

@@ -112,6 +112,9 @@ static chandler_rigid_earth_pair_f32 chandler_rigid_earth_pi_f32(void)
     return (chandler_rigid_earth_pair_f32){3.14159274F, (-8.74227766e-08F)};
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int chandler_rigid_earth_setup_f32(float A, float C, float rate,
     chandler_rigid_earth_constants_f32 *constants)
 {

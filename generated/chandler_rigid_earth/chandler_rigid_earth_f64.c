@@ -112,6 +112,9 @@ static chandler_rigid_earth_pair_f64 chandler_rigid_earth_pi_f64(void)
     return (chandler_rigid_earth_pair_f64){3.141592653589793, 1.2246467991473532e-16};
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int chandler_rigid_earth_setup_f64(double A, double C, double rate,
     chandler_rigid_earth_constants_f64 *constants)
 {

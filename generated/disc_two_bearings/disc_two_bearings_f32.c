@@ -103,6 +103,9 @@ static disc_two_bearings_pair_f32 disc_two_bearings_div_f32(disc_two_bearings_pa
     return disc_two_bearings_add_f32(disc_two_bearings_add_f32(q1, q2), q3);
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int disc_two_bearings_setup_f32(float m, float r, float w, float W, float d, float g,
     disc_two_bearings_constants_f32 *constants)
 {

@@ -21,7 +21,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 fb6fcad03f187c1e.
+ * Body of these files: sha256 f4d43dcce380dddf.
  */
 #ifndef DISC_TWO_BEARINGS_F32_H
 #define DISC_TWO_BEARINGS_F32_H
@@ -54,8 +54,6 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 11 operations on pairs.
- * On Cortex-M0+, -O2: 29618 to 30302 instructions, 1204 B of code, 368 B of stack.
- * On Cortex-M4F, -O2: 595 instructions, 880 B of code, 280 B of stack.
  */
 int disc_two_bearings_setup_f32(float m, float r, float w, float W, float d, float g,
     disc_two_bearings_constants_f32 *constants);
@@ -72,8 +70,6 @@ int disc_two_bearings_setup_f32(float m, float r, float w, float W, float d, flo
  * Bound: proved, absolute, by rounding alone, on the whole ranges: couple 9.6e-07 N m (seen
  *            9.5e-07).
  * Cost: no operations.
- * On Cortex-M0+, -O2: 2 to 3 instructions, 8 B of code, 0 B of stack.
- * On Cortex-M4F, -O2: 3 instructions, 8 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -88,8 +84,6 @@ void disc_two_bearings_couple_f32(const disc_two_bearings_constants_f32 *constan
  *            samples of the ranges, 65536 searched from the worst); at 8312 hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: R_up 1.6e-05 N (seen 1.5e-05).
  * Cost: no operations.
- * On Cortex-M0+, -O2: 2 to 3 instructions, 8 B of code, 0 B of stack.
- * On Cortex-M4F, -O2: 3 instructions, 8 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -106,8 +100,6 @@ void disc_two_bearings_R_up_f32(const disc_two_bearings_constants_f32 *constants
  * Bound: proved, absolute, by rounding alone, on the whole ranges: R_down 1.6e-05 N (seen
  *            1.5e-05).
  * Cost: no operations.
- * On Cortex-M0+, -O2: 3 instructions, 8 B of code, 0 B of stack.
- * On Cortex-M4F, -O2: 3 instructions, 8 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */

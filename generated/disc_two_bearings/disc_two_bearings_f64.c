@@ -103,6 +103,9 @@ static disc_two_bearings_pair_f64 disc_two_bearings_div_f64(disc_two_bearings_pa
     return disc_two_bearings_add_f64(disc_two_bearings_add_f64(q1, q2), q3);
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int disc_two_bearings_setup_f64(double m, double r, double w, double W, double d, double g,
     disc_two_bearings_constants_f64 *constants)
 {

@@ -22,7 +22,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 7cc3b8dab6827d5c.
+ * Body of these files: sha256 25066745468a321c.
  */
 #ifndef EDGE_RUNNER_FLAT_F32_H
 #define EDGE_RUNNER_FLAT_F32_H
@@ -60,8 +60,6 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 6 operations on pairs.
- * On Cortex-M0+, -O2: 27652 to 28350 instructions, 1164 B of code, 392 B of stack.
- * On Cortex-M4F, -O2: 596 instructions, 780 B of code, 180 B of stack.
  */
 int edge_runner_flat_setup_f32(float m, float r, float L, float g,
     edge_runner_flat_constants_f32 *constants);
@@ -76,8 +74,6 @@ int edge_runner_flat_setup_f32(float m, float r, float L, float g,
  *            samples of the ranges, 65536 searched from the worst); at 8329 hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: N 0.0034 N (seen 0.0033).
  * Cost: 1 add, 2 mul.
- * On Cortex-M0+, -O2: 292 to 328 instructions, 28 B of code, 48 B of stack.
- * On Cortex-M4F, -O2: 7 instructions, 28 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -96,8 +92,6 @@ void edge_runner_flat_N_f32(const edge_runner_flat_constants_f32 *constants, flo
  * Bound: proved, absolute, by rounding alone, on the whole ranges: gyro_gain 2.7e-07 (seen
  *            2.6e-07).
  * Cost: 1 add, 2 mul.
- * On Cortex-M0+, -O2: 306 to 319 instructions, 32 B of code, 48 B of stack.
- * On Cortex-M4F, -O2: 7 instructions, 28 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -114,8 +108,6 @@ void edge_runner_flat_gyro_gain_f32(const edge_runner_flat_constants_f32 *consta
  * Bound: proved, absolute, by rounding alone, on the whole ranges: spin_rel 1.1e-06 rad/s (seen
  *            1.1e-06).
  * Cost: 1 mul.
- * On Cortex-M0+, -O2: 123 to 126 instructions, 16 B of code, 40 B of stack.
- * On Cortex-M4F, -O2: 4 instructions, 16 B of code, 0 B of stack.
  */
 void edge_runner_flat_spin_rel_f32(const edge_runner_flat_constants_f32 *constants, float W,
     float *spin_rel);
@@ -134,8 +126,6 @@ void edge_runner_flat_spin_rel_f32(const edge_runner_flat_constants_f32 *constan
  * Bound: proved, absolute, by rounding alone, on the whole ranges: hinge_radial 0.0054 N (seen
  *            0.0053).
  * Cost: 2 mul.
- * On Cortex-M0+, -O2: 244 to 251 instructions, 24 B of code, 48 B of stack.
- * On Cortex-M4F, -O2: 5 instructions, 20 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, constant_mass, newton, rate_seen_from_N, third_law.
  */
 void edge_runner_flat_hinge_radial_f32(const edge_runner_flat_constants_f32 *constants, float W,
@@ -152,8 +142,6 @@ void edge_runner_flat_hinge_radial_f32(const edge_runner_flat_constants_f32 *con
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: hinge_z 0.0019 N (seen 0.0019).
  * Cost: 2 mul.
- * On Cortex-M0+, -O2: 244 to 251 instructions, 24 B of code, 48 B of stack.
- * On Cortex-M4F, -O2: 5 instructions, 20 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */

@@ -101,6 +101,9 @@ DERIVE_APART static edge_runner_flat_pair_f64 edge_runner_flat_div_f64(edge_runn
     return edge_runner_flat_add_f64(edge_runner_flat_add_f64(q1, q2), q3);
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int edge_runner_flat_setup_f64(double m, double r, double L, double g,
     edge_runner_flat_constants_f64 *constants)
 {

@@ -22,7 +22,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 7f50110f8d283759.
+ * Body of these files: sha256 87c225722477aa71.
  */
 #ifndef EDGE_RUNNER_FLAT_F64_H
 #define EDGE_RUNNER_FLAT_F64_H
@@ -64,7 +64,6 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 6 operations on pairs.
- * On Cortex-M0+, -O2: 54655 to 59210 instructions, 1840 B of code, 728 B of stack.
  */
 int edge_runner_flat_setup_f64(double m, double r, double L, double g,
     edge_runner_flat_constants_f64 *constants);
@@ -79,7 +78,6 @@ int edge_runner_flat_setup_f64(double m, double r, double L, double g,
  *            samples of the ranges, 65536 searched from the worst); at 8330 hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: N 6.2e-12 N (seen 6.1e-12).
  * Cost: 1 add, 2 mul.
- * On Cortex-M0+, -O2: 689 to 737 instructions, 36 B of code, 80 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -97,7 +95,6 @@ void edge_runner_flat_N_f64(const edge_runner_flat_constants_f64 *constants, dou
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: gyro_gain 5e-16 (seen 4.9e-16).
  * Cost: 1 add, 2 mul.
- * On Cortex-M0+, -O2: 706 to 726 instructions, 40 B of code, 80 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -114,7 +111,6 @@ void edge_runner_flat_gyro_gain_f64(const edge_runner_flat_constants_f64 *consta
  * Bound: proved, absolute, by rounding alone, on the whole ranges: spin_rel 2e-15 rad/s (seen
  *            2e-15).
  * Cost: 1 mul.
- * On Cortex-M0+, -O2: 298 to 305 instructions, 20 B of code, 72 B of stack.
  */
 void edge_runner_flat_spin_rel_f64(const edge_runner_flat_constants_f64 *constants, double W,
     double *spin_rel);
@@ -133,7 +129,6 @@ void edge_runner_flat_spin_rel_f64(const edge_runner_flat_constants_f64 *constan
  * Bound: proved, absolute, by rounding alone, on the whole ranges: hinge_radial 9.9e-12 N (seen
  *            9.7e-12).
  * Cost: 2 mul.
- * On Cortex-M0+, -O2: 586 to 598 instructions, 32 B of code, 80 B of stack.
  * Rests on: axes_are_orthonormal, constant_mass, newton, rate_seen_from_N, third_law.
  */
 void edge_runner_flat_hinge_radial_f64(const edge_runner_flat_constants_f64 *constants, double W,
@@ -151,7 +146,6 @@ void edge_runner_flat_hinge_radial_f64(const edge_runner_flat_constants_f64 *con
  * Bound: proved, absolute, by rounding alone, on the whole ranges: hinge_z 3.5e-12 N (seen
  *            3.4e-12).
  * Cost: 2 mul.
- * On Cortex-M0+, -O2: 585 to 604 instructions, 32 B of code, 80 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */

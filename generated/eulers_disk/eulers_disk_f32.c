@@ -142,6 +142,9 @@ static eulers_disk_pair_f32 eulers_disk_cos_f32(eulers_disk_pair_f32 a)
     return eulers_disk_sine_f32(a, 1.0F);
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int eulers_disk_setup_f32(float m, float r, float tilt, float g,
     eulers_disk_constants_f32 *constants)
 {

@@ -154,6 +154,9 @@ static eulers_disk_pair_f64 eulers_disk_cos_f64(eulers_disk_pair_f64 a)
     return eulers_disk_sine_f64(a, 1.0);
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int eulers_disk_setup_f64(double m, double r, double tilt, double g,
     eulers_disk_constants_f64 *constants)
 {

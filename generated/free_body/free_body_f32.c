@@ -105,6 +105,9 @@ static free_body_pair_f32 free_body_power_of_two_f32(free_body_pair_f32 a)
     return (free_body_pair_f32){q - (0.99999994F * q), 0.0F};
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int free_body_setup_f32(float I_xx, float I_yy, float I_zz, float I_xy, float I_xz, float I_yz,
     free_body_constants_f32 *constants)
 {

@@ -18,7 +18,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 936e0f64474757d4.
+ * Body of these files: sha256 5caa4a9b269fe938.
  */
 #ifndef FREE_BODY_F64_H
 #define FREE_BODY_F64_H
@@ -83,7 +83,6 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 120 operations on pairs.
- * On Cortex-M0+, -O2: 522823 to 549200 instructions, 11444 B of code, 3552 B of stack.
  */
 int free_body_setup_f64(double I_xx, double I_yy, double I_zz, double I_xy, double I_xz,
     double I_yz, free_body_constants_f64 *constants);
@@ -110,10 +109,9 @@ int free_body_setup_f64(double I_xx, double I_yy, double I_zz, double I_xy, doub
  * Error: median 0.24, largest 7.3 u of the largest product or sum in the equation (of omega_dot;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8348 hard samples
  *            8.1 u (of omega_dot, turned, ill-conditioned).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: omega_dot 9.3e-14 rad/s^2 (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: omega_dot 9.7e-14 rad/s^2 (seen
  *            6e-14).
  * Cost: 13 add, 4 sub, 23 mul.
- * On Cortex-M0+, -O2: 9157 to 9512 instructions, 676 B of code, 152 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -130,19 +128,16 @@ void free_body_acceleration_f64(const free_body_constants_f64 *constants, const 
  * Error: median 0.28, largest 6.6 u of the largest product or sum in the equation (of jacobian;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8348 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: omega_dot 6.6e-14 rad/s^2 (seen
- *            4e-14), jacobian 3.9e-15 (seen 3.1e-15).
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: omega_dot 6.2e-14 rad/s^2 (seen
+ *            4.5e-14), jacobian 3.9e-15 (seen 3.3e-15).
  * Cost: 21 add, 12 sub, 48 mul.
- * On Cortex-M0+, -O2: 19049 to 19552 instructions, 1548 B of code, 216 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
 void free_body_acceleration_jacobian_f64(const free_body_constants_f64 *constants,
     const double omega[3], const double moment[3], double omega_dot[3], double jacobian[18]);
 
-/* The same, the whole matrix: 18 entries.
- * On Cortex-M0+, -O2: 19031 to 19610 instructions, 1564 B of code, 232 B of stack.
- */
+/* The same, the whole matrix: 18 entries. */
 void free_body_acceleration_jacobian_dense_f64(const free_body_constants_f64 *constants,
     const double omega[3], const double moment[3], double omega_dot[3], double jacobian[18]);
 
@@ -167,7 +162,6 @@ void free_body_acceleration_jacobian_dense_f64(const free_body_constants_f64 *co
  * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 1.3e-13 N m (seen
  *            9.3e-14).
  * Cost: 7 add, 10 sub, 23 mul.
- * On Cortex-M0+, -O2: 9233 to 9541 instructions, 724 B of code, 176 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -188,7 +182,6 @@ void free_body_moment_f64(const free_body_constants_f64 *constants, const double
  * Bound: proved, absolute, by rounding alone, on the whole ranges: angular_momentum 5.8e-15 kg
  *            m^2/s (seen 5.6e-15).
  * Cost: 6 sub, 9 mul.
- * On Cortex-M0+, -O2: 3544 to 3766 instructions, 292 B of code, 112 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void free_body_angular_momentum_f64(const free_body_constants_f64 *constants, const double omega[3],
@@ -221,7 +214,6 @@ void free_body_angular_momentum_f64(const free_body_constants_f64 *constants, co
  * Bound: proved, absolute, by rounding alone, on the whole ranges: rate_in_axes 2.4e-14 N m (seen
  *            2.3e-14), rate_absolute 1.2e-13 N m (seen 8.2e-14).
  * Cost: 7 add, 10 sub, 23 mul.
- * On Cortex-M0+, -O2: 9232 to 9638 instructions, 720 B of code, 160 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, rate_seen_from_N, rigid.
  */
 void free_body_angular_momentum_rate_f64(const free_body_constants_f64 *constants,
@@ -241,7 +233,6 @@ void free_body_angular_momentum_rate_f64(const free_body_constants_f64 *constant
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 1.5e-13 J (seen
  *            1.1e-13).
  * Cost: 2 add, 3 sub, 9 mul.
- * On Cortex-M0+, -O2: 3343 to 3493 instructions, 260 B of code, 112 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void free_body_kinetic_energy_f64(const free_body_constants_f64 *constants, const double omega[3],

@@ -105,6 +105,9 @@ DERIVE_APART static free_body_principal_pair_f32 free_body_principal_div_f32(fre
     return free_body_principal_add_f32(free_body_principal_add_f32(q1, q2), q3);
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int free_body_principal_setup_f32(float I_xx, float I_yy, float I_zz,
     free_body_principal_constants_f32 *constants)
 {

@@ -105,6 +105,9 @@ DERIVE_APART static free_body_principal_pair_f64 free_body_principal_div_f64(fre
     return free_body_principal_add_f64(free_body_principal_add_f64(q1, q2), q3);
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int free_body_principal_setup_f64(double I_xx, double I_yy, double I_zz,
     free_body_principal_constants_f64 *constants)
 {

@@ -166,6 +166,9 @@ static gyrocompass_pair_f32 gyrocompass_pi_f32(void)
     return (gyrocompass_pair_f32){3.14159274F, (-8.74227766e-08F)};
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int gyrocompass_setup_f32(float m, float r, float w3, float lat, float we,
     gyrocompass_constants_f32 *constants)
 {

@@ -22,7 +22,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 6174384fbcb65b3d.
+ * Body of these files: sha256 25417a266d567e8e.
  */
 #ifndef GYROCOMPASS_F32_H
 #define GYROCOMPASS_F32_H
@@ -52,9 +52,6 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 18 operations on pairs.
- * On Cortex-M0+, -O2: 95229 to 100527 instructions, 2044 B of code, 128 B of tables, 600 B of
- *            stack.
- * On Cortex-M4F, -O2: 2231 to 2288 instructions, 1704 B of code, 128 B of tables, 476 B of stack.
  */
 int gyrocompass_setup_f32(float m, float r, float w3, float lat, float we,
     gyrocompass_constants_f32 *constants);
@@ -72,8 +69,6 @@ int gyrocompass_setup_f32(float m, float r, float w3, float lat, float we,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: alpha_ddot 3.3e-08 rad/s^2
  *            (seen 2.3e-08); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 1 sub, 2 mul, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 3839 to 3924 instructions, 572 B of code, 80 B of stack.
- * On Cortex-M4F, -O2: 92 instructions, 424 B of code, 24 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -93,8 +88,6 @@ void gyrocompass_alpha_ddot_f32(const gyrocompass_constants_f32 *constants, floa
  * Bound: proved, absolute, by rounding alone, on the whole ranges: period_s 9.6e-07 s (seen
  *            9.5e-07).
  * Cost: no operations.
- * On Cortex-M0+, -O2: 2 to 3 instructions, 8 B of code, 0 B of stack.
- * On Cortex-M4F, -O2: 3 instructions, 8 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -117,8 +110,6 @@ void gyrocompass_period_s_f32(const gyrocompass_constants_f32 *constants, float 
  * Bound: proved, absolute, by rounding alone, on the whole ranges: mass_matrix 9.4e-10 (seen
  *            9.3e-10), damping_matrix 0 (seen 0), stiffness_matrix 4.7e-10 (seen 4.7e-10).
  * Cost: no operations.
- * On Cortex-M0+, -O2: 8 instructions, 16 B of code, 12 B of stack.
- * On Cortex-M4F, -O2: 7 instructions, 20 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

@@ -178,6 +178,9 @@ static gyrocompass_pair_f64 gyrocompass_pi_f64(void)
     return (gyrocompass_pair_f64){3.141592653589793, 1.2246467991473532e-16};
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int gyrocompass_setup_f64(double m, double r, double w3, double lat, double we,
     gyrocompass_constants_f64 *constants)
 {

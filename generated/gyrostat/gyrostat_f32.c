@@ -110,6 +110,9 @@ static gyrostat_pair_f32 gyrostat_power_of_two_f32(gyrostat_pair_f32 a)
     return (gyrostat_pair_f32){q - (0.99999994F * q), 0.0F};
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int gyrostat_setup_f32(float I_xx, float I_yy, float I_zz, float I_xy, float I_xz, float I_yz,
     float C_1, float C_2, float C_3, gyrostat_constants_f32 *constants)
 {

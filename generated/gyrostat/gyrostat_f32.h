@@ -29,7 +29,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 3d921b4006c41812.
+ * Body of these files: sha256 ab87b0e01c887c20.
  */
 #ifndef GYROSTAT_F32_H
 #define GYROSTAT_F32_H
@@ -116,8 +116,6 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 83 operations on pairs.
- * On Cortex-M0+, -O2: 218295 to 222264 instructions, 4348 B of code, 1488 B of stack.
- * On Cortex-M4F, -O2: 4498 instructions, 3912 B of code, 1292 B of stack.
  */
 int gyrostat_setup_f32(float I_xx, float I_yy, float I_zz, float I_xy, float I_xz, float I_yz,
     float C_1, float C_2, float C_3, gyrostat_constants_f32 *constants);
@@ -143,13 +141,11 @@ int gyrostat_setup_f32(float I_xx, float I_yy, float I_zz, float I_xy, float I_x
  * Error: median 0.72, largest 14 u of the largest product or sum in the equation (of omega_dot;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8354 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: coordinate_rates 7.7e-06 rad/s
- *            (seen 5.4e-06), omega_dot 1.3e-05 rad/s^2 (seen 8.9e-06), wheel_accelerations 2e-05
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: coordinate_rates 7.9e-06 rad/s
+ *            (seen 5.4e-06), omega_dot 1.3e-05 rad/s^2 (seen 8.9e-06), wheel_accelerations 1.9e-05
  *            rad/s^2 (seen 1.4e-05); assumed: sines and cosines of our own within 0.79 ulp.
  * Singular: at theta = pi/2 + k pi, psi_dot, phi_dot infinite, no number or beyond all measure.
  * Cost: 15 add, 14 sub, 34 mul, 1 div, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 13764 to 15343 instructions, 1284 B of code, 176 B of stack.
- * On Cortex-M4F, -O2: 298 to 300 instructions, 904 B of code, 76 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -178,14 +174,12 @@ void gyrostat_state_rate_f32(const gyrostat_constants_f32 *constants, float thet
  *            200000 samples of the ranges, 65536 searched from the worst); at 8354 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: coordinate_rates 8.4e-06 rad/s
- *            (seen 5.9e-06), omega_dot 1.3e-05 rad/s^2 (seen 7.1e-06), wheel_accelerations 2e-05
- *            rad/s^2 (seen 1.2e-05), jacobian 9.8e-05 (seen 4.6e-05); assumed: sines and cosines
+ *            (seen 5.8e-06), omega_dot 1.3e-05 rad/s^2 (seen 7.9e-06), wheel_accelerations 1.9e-05
+ *            rad/s^2 (seen 1.3e-05), jacobian 9.6e-05 (seen 4.5e-05); assumed: sines and cosines
  *            of our own within 0.79 ulp.
  * Singular: at theta = pi/2 + k pi, psi_dot, phi_dot, jacobian infinite, no number or beyond all
  *            measure.
  * Cost: 33 add, 37 sub, 96 mul, 1 div, 20 neg, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 24671 to 26391 instructions, 2940 B of code, 216 B of stack.
- * On Cortex-M4F, -O2: 581 to 583 instructions, 2004 B of code, 100 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -195,10 +189,7 @@ void gyrostat_state_rate_jacobian_f32(const gyrostat_constants_f32 *constants, f
     const float wheel_torques[3], float coordinate_rates[3], float omega_dot[3],
     float wheel_accelerations[3], float jacobian[84]);
 
-/* The same, the whole matrix: 135 entries.
- * On Cortex-M0+, -O2: 24884 to 26652 instructions, 3424 B of code, 216 B of stack.
- * On Cortex-M4F, -O2: 633 to 635 instructions, 2164 B of code, 100 B of stack.
- */
+/* The same, the whole matrix: 135 entries. */
 void gyrostat_state_rate_jacobian_dense_f32(const gyrostat_constants_f32 *constants, float theta,
     float phi, const float omega[3], const float wheel_speeds[3], const float moment[3],
     const float wheel_torques[3], float coordinate_rates[3], float omega_dot[3],
@@ -221,10 +212,8 @@ void gyrostat_state_rate_jacobian_dense_f32(const gyrostat_constants_f32 *consta
  *            kinetic_energy; 200000 samples of the ranges, 65536 searched from the worst); at 8354
  *            hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 0.0011 J (seen
- *            0.00089).
+ *            0.00087).
  * Cost: 8 add, 3 sub, 15 mul.
- * On Cortex-M0+, -O2: 2578 to 2706 instructions, 284 B of code, 80 B of stack.
- * On Cortex-M4F, -O2: 43 instructions, 172 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rigid.
  */
@@ -247,11 +236,9 @@ void gyrostat_kinetic_energy_f32(const gyrostat_constants_f32 *constants, const 
  * Error: median 0.51, largest 6.3 u of the largest product or sum in the equation (of
  *            angular_momentum; 200000 samples of the ranges, 65536 searched from the worst); at
  *            8354 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: angular_momentum 2e-06 kg m^2/s
- *            (seen 1.8e-06).
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: angular_momentum 1.9e-06 kg
+ *            m^2/s (seen 1.8e-06).
  * Cost: 3 add, 6 sub, 12 mul.
- * On Cortex-M0+, -O2: 2064 to 2274 instructions, 248 B of code, 72 B of stack.
- * On Cortex-M4F, -O2: 43 instructions, 172 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rigid.
  */

@@ -110,6 +110,9 @@ static gyrostat_pair_f64 gyrostat_power_of_two_f64(gyrostat_pair_f64 a)
     return (gyrostat_pair_f64){q - (0.9999999999999999 * q), 0.0};
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int gyrostat_setup_f64(double I_xx, double I_yy, double I_zz, double I_xy, double I_xz, double I_yz,
     double C_1, double C_2, double C_3, gyrostat_constants_f64 *constants)
 {

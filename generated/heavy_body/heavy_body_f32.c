@@ -105,6 +105,9 @@ static _Bool heavy_body_at_most_f32(const heavy_body_pair_f32 a, const heavy_bod
     return (a.high < b.high) || ((a.high <= b.high) && (a.low <= b.low));
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int heavy_body_setup_f32(float I_xx, float I_yy, float I_zz, float w,
     heavy_body_constants_f32 *constants)
 {

@@ -105,6 +105,9 @@ static _Bool heavy_body_at_most_f64(const heavy_body_pair_f64 a, const heavy_bod
     return (a.high < b.high) || ((a.high <= b.high) && (a.low <= b.low));
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int heavy_body_setup_f64(double I_xx, double I_yy, double I_zz, double w,
     heavy_body_constants_f64 *constants)
 {

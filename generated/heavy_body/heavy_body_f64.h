@@ -21,7 +21,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 72f069be7726cb4a.
+ * Body of these files: sha256 9ecf758d81b7093b.
  */
 #ifndef HEAVY_BODY_F64_H
 #define HEAVY_BODY_F64_H
@@ -67,7 +67,6 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 23 operations on pairs.
- * On Cortex-M0+, -O2: 238500 to 249201 instructions, 4012 B of code, 1320 B of stack.
  */
 int heavy_body_setup_f64(double I_xx, double I_yy, double I_zz, double w,
     heavy_body_constants_f64 *constants);
@@ -84,7 +83,6 @@ int heavy_body_setup_f64(double I_xx, double I_yy, double I_zz, double w,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 1.1e-13 J (seen
  *            8.2e-14).
  * Cost: 2 add, 6 mul.
- * On Cortex-M0+, -O2: 2018 to 2072 instructions, 140 B of code, 104 B of stack.
  * Rests on: A_is_fixed, body_triad, body_triad_is_orthonormal, rigid.
  */
 void heavy_body_kinetic_energy_f64(const heavy_body_constants_f64 *constants, const double omega[3],
@@ -101,11 +99,10 @@ void heavy_body_kinetic_energy_f64(const heavy_body_constants_f64 *constants, co
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples 2.5 u (of
  *            omega_next, denormal).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 1.4e-15 (seen
- *            1.7e-16), omega_next 1.3e-14 rad/s (seen 1.9e-15); assumed: quaternions given with
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 1.1e-15 (seen
+ *            1.5e-16), omega_next 7.5e-15 rad/s (seen 1.9e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 93 add, 17 sub, 120 mul, 9 div, 9 neg, 2 less, 30 select.
- * On Cortex-M0+, -O2: 57500 to 58629 instructions, 4516 B of code, 352 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -124,11 +121,10 @@ void heavy_body_step_split2_f64(const heavy_body_constants_f64 *constants, const
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples 3.2 u (of
  *            omega_next, at rest).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 1.4e-14 (seen
- *            1.6e-16), omega_next 9.1e-14 rad/s (seen 2.2e-15); assumed: quaternions given with
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 9e-15 (seen
+ *            1.6e-16), omega_next 6.2e-14 rad/s (seen 2.3e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 588 add, 137 sub, 716 mul, 54 div, 49 neg, 2 less, 90 select.
- * On Cortex-M0+, -O2: 350743 to 354860 instructions, 24280 B of code, 528 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -149,12 +145,11 @@ void heavy_body_step_split_f64(const heavy_body_constants_f64 *constants, const 
  * Error: median 0.36, largest 3.8 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 1.2e-15 (seen
- *            3.3e-16), omega_next 2.3e-15 rad/s (seen 1.5e-15); assumed: quaternions given with
- *            |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 .. 1.1.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 7.9e-16 (seen
+ *            3.4e-16), omega_next 2.3e-15 rad/s (seen 1.6e-15); assumed: quaternions given with
+ *            |q|^2 in 0.999 .. 1.001.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 76 add, 24 sub, 144 mul, 1 div, 1 sqrt.
- * On Cortex-M0+, -O2: 55292 to 56498 instructions, 3516 B of code, 416 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -178,7 +173,6 @@ void heavy_body_step_rk4_f64(const heavy_body_constants_f64 *constants, const do
  * Bound: not proved: 8044 operations are more than the 2000 tried; 7826 operations are more than
  *            the 2000 tried.
  * Cost: 3062 add, 1125 sub, 4296 mul, 22 div, 21 neg, 9 sqrt, 28 abs, 3 less, 3 select.
- * On Cortex-M0+, -O2: 1910744 to 1922175 instructions, 4716 B of code, 2176 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.

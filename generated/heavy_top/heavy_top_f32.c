@@ -97,6 +97,9 @@ static heavy_top_pair_f32 heavy_top_div_f32(heavy_top_pair_f32 a, heavy_top_pair
     return heavy_top_add_f32(heavy_top_add_f32(q1, q2), q3);
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int heavy_top_setup_f32(float A, float C, float m, float g, float l,
     heavy_top_constants_f32 *constants)
 {

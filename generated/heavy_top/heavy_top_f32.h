@@ -21,7 +21,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 4ba4c377d884c50b.
+ * Body of these files: sha256 b97875c8052543f9.
  */
 #ifndef HEAVY_TOP_F32_H
 #define HEAVY_TOP_F32_H
@@ -58,8 +58,6 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 7 operations on pairs.
- * On Cortex-M0+, -O2: 22359 to 22964 instructions, 1136 B of code, 304 B of stack.
- * On Cortex-M4F, -O2: 449 instructions, 712 B of code, 192 B of stack.
  */
 int heavy_top_setup_f32(float A, float C, float m, float g, float l,
     heavy_top_constants_f32 *constants);
@@ -82,13 +80,11 @@ int heavy_top_setup_f32(float A, float C, float m, float g, float l,
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: coordinate_rates 1.2e-05 rad/s
- *            (seen 9.1e-06), omega_dot 0.0002 rad/s^2 (seen 0.00015); assumed: sines and cosines
+ *            (seen 8.4e-06), omega_dot 0.0002 rad/s^2 (seen 0.00015); assumed: sines and cosines
  *            of our own within 0.79 ulp.
  * Singular: at theta = k pi, psi_dot, phi_dot, omega_dot_x, omega_dot_y infinite, no number or
  *            beyond all measure.
  * Cost: 3 sub, 5 mul, 1 div, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 4763 to 5608 instructions, 696 B of code, 128 B of stack.
- * On Cortex-M4F, -O2: 117 to 118 instructions, 524 B of code, 44 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -109,13 +105,11 @@ void heavy_top_state_rate_f32(const heavy_top_constants_f32 *constants, float th
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: coordinate_rates 1.5e-05 rad/s
- *            (seen 1.1e-05), omega_dot 0.00023 rad/s^2 (seen 0.00018), jacobian 0.0016 (seen
- *            0.0012); assumed: sines and cosines of our own within 0.79 ulp.
+ *            (seen 1e-05), omega_dot 0.00023 rad/s^2 (seen 0.00017), jacobian 0.0016 (seen 0.001);
+ *            assumed: sines and cosines of our own within 0.79 ulp.
  * Singular: at theta = k pi, psi_dot, phi_dot, omega_dot_x, omega_dot_y, jacobian infinite, no
  *            number or beyond all measure.
  * Cost: 1 add, 5 sub, 15 mul, 1 div, 4 neg, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 6211 to 7073 instructions, 884 B of code, 144 B of stack.
- * On Cortex-M4F, -O2: 149 to 150 instructions, 656 B of code, 44 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -123,10 +117,7 @@ void heavy_top_state_rate_f32(const heavy_top_constants_f32 *constants, float th
 void heavy_top_state_rate_jacobian_f32(const heavy_top_constants_f32 *constants, float theta,
     const float omega[3], float coordinate_rates[3], float omega_dot[3], float jacobian[13]);
 
-/* The same, the whole matrix: 36 entries.
- * On Cortex-M0+, -O2: 6228 to 7100 instructions, 936 B of code, 144 B of stack.
- * On Cortex-M4F, -O2: 172 to 173 instructions, 704 B of code, 44 B of stack.
- */
+/* The same, the whole matrix: 36 entries. */
 void heavy_top_state_rate_jacobian_dense_f32(const heavy_top_constants_f32 *constants, float theta,
     const float omega[3], float coordinate_rates[3], float omega_dot[3], float jacobian[36]);
 
@@ -143,8 +134,6 @@ void heavy_top_state_rate_jacobian_dense_f32(const heavy_top_constants_f32 *cons
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 4.7e-08 J (seen
  *            3.4e-08).
  * Cost: 2 add, 5 mul.
- * On Cortex-M0+, -O2: 723 to 767 instructions, 80 B of code, 56 B of stack.
- * On Cortex-M4F, -O2: 14 instructions, 56 B of code, 0 B of stack.
  * Rests on: A_is_fixed, axes_are_orthonormal, body_triad, body_triad_is_orthonormal,
  *            composed_turns, further_axes_are_right_handed, rigid.
  */
@@ -166,8 +155,6 @@ void heavy_top_kinetic_energy_f32(const heavy_top_constants_f32 *constants, cons
  * Bound: proved, absolute, by rounding alone, on the whole ranges: angular_momentum 9.4e-10 kg
  *            m^2/s (seen 9.3e-10).
  * Cost: 3 mul.
- * On Cortex-M0+, -O2: 370 to 379 instructions, 44 B of code, 56 B of stack.
- * On Cortex-M4F, -O2: 13 instructions, 52 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rigid.
  */

@@ -97,6 +97,9 @@ static heavy_top_pair_f64 heavy_top_div_f64(heavy_top_pair_f64 a, heavy_top_pair
     return heavy_top_add_f64(heavy_top_add_f64(q1, q2), q3);
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int heavy_top_setup_f64(double A, double C, double m, double g, double l,
     heavy_top_constants_f64 *constants)
 {

@@ -64,6 +64,9 @@ DERIVE_APART static propeller_3_blade_pair_f32 propeller_3_blade_mul_f32(propell
     return (propeller_3_blade_pair_f32){high, e - (high - p.high)};
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int propeller_3_blade_setup_f32(float blade_mass, float blade_length, float p, float W,
     propeller_3_blade_constants_f32 *constants)
 {

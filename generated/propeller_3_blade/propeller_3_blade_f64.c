@@ -64,6 +64,9 @@ DERIVE_APART static propeller_3_blade_pair_f64 propeller_3_blade_mul_f64(propell
     return (propeller_3_blade_pair_f64){high, e - (high - p.high)};
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int propeller_3_blade_setup_f64(double blade_mass, double blade_length, double p, double W,
     propeller_3_blade_constants_f64 *constants)
 {

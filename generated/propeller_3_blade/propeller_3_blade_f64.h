@@ -20,7 +20,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 7240659c4f513ef2.
+ * Body of these files: sha256 5ae776b9ebb6a966.
  */
 #ifndef PROPELLER_3_BLADE_F64_H
 #define PROPELLER_3_BLADE_F64_H
@@ -56,7 +56,6 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 6 operations on pairs.
- * On Cortex-M0+, -O2: 25037 to 28350 instructions, 1048 B of code, 456 B of stack.
  */
 int propeller_3_blade_setup_f64(double blade_mass, double blade_length, double p, double W,
     propeller_3_blade_constants_f64 *constants);
@@ -70,7 +69,6 @@ int propeller_3_blade_setup_f64(double blade_mass, double blade_length, double p
  *            of the ranges, 65536 searched from the worst); at 8312 hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: M 4.6e-13 N m (seen 4.5e-13).
  * Cost: no operations.
- * On Cortex-M0+, -O2: 12 to 13 instructions, 24 B of code, 12 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */

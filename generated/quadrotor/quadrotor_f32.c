@@ -100,6 +100,9 @@ DERIVE_APART static quadrotor_pair_f32 quadrotor_div_f32(quadrotor_pair_f32 a, q
     return quadrotor_add_f32(quadrotor_add_f32(q1, q2), q3);
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int quadrotor_setup_f32(float m, float I_x, float I_y, float I_z, float d, float m_r, float J_r,
     float c_T, float c_Q, float g, quadrotor_constants_f32 *constants)
 {

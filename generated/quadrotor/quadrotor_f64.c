@@ -100,6 +100,9 @@ DERIVE_APART static quadrotor_pair_f64 quadrotor_div_f64(quadrotor_pair_f64 a, q
     return quadrotor_add_f64(quadrotor_add_f64(q1, q2), q3);
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int quadrotor_setup_f64(double m, double I_x, double I_y, double I_z, double d, double m_r,
     double J_r, double c_T, double c_Q, double g, quadrotor_constants_f64 *constants)
 {

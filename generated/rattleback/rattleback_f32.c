@@ -115,6 +115,9 @@ static _Bool rattleback_less_f32(const rattleback_pair_f32 a, const rattleback_p
     return (a.high < b.high) || ((a.high <= b.high) && (a.low < b.low));
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int rattleback_setup_f32(float m, float a, float b, float c, float h, float A, float B, float C,
     float D, float n, float g, rattleback_constants_f32 *constants)
 {

@@ -33,7 +33,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 69c6fb456e0d104a.
+ * Body of these files: sha256 5a6ccd1272ac7141.
  */
 #ifndef RATTLEBACK_F32_H
 #define RATTLEBACK_F32_H
@@ -99,8 +99,6 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 58 operations on pairs.
- * On Cortex-M0+, -O2: 120779 to 122595 instructions, 3032 B of code, 1184 B of stack.
- * On Cortex-M4F, -O2: 2487 instructions, 2696 B of code, 1012 B of stack.
  */
 int rattleback_setup_f32(float m, float a, float b, float c, float h, float A, float B, float C,
     float D, float n, float g, rattleback_constants_f32 *constants);
@@ -130,8 +128,6 @@ int rattleback_setup_f32(float m, float a, float b, float c, float h, float A, f
  * Singular: at alpha = pi/2 + k pi, beta_dot_rate, W_rate infinite, no number or beyond all
  *            measure.
  * Cost: 54 add, 52 sub, 201 mul, 3 div, 3 neg, 1 sqrt, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 40771 to 41350 instructions, 3560 B of code, 320 B of stack.
- * On Cortex-M4F, -O2: 579 instructions, 2048 B of code, 188 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -153,15 +149,6 @@ void rattleback_state_rate_f32(const rattleback_constants_f32 *constants, float 
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_dot = omega x rho_i   [lecture step velocity_of_particle]
  * Postcondition: l_N_dot = l_dot + Omega x l   [lecture step transport_theorem]
- * In this scene: mass_matrix[0] = A + m*(h - c)^2
- * In this scene: mass_matrix[1] = -D
- * In this scene: mass_matrix[3] = -D
- * In this scene: mass_matrix[4] = B + m*(c - h)^2
- * In this scene: mass_matrix[8] = C
- * In this scene: damping_matrix[1] = (A + B - C + m*(2*c - 2*h - b^2/c)*(c - h))*n
- * In this scene: damping_matrix[3] = (C - A - B + m*(2*c - 2*h - a^2/c)*(h - c))*n
- * In this scene: stiffness_matrix[0] = (C - B)*n^2 + m*((b^2*g)/c + (g - (h - c + b^2/c)*n^2)*(h -
- *            c))
  * Error: median 0, largest 1 u of the largest product or sum in the equation (of stiffness_matrix;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8336 hard samples no
  *            more.
@@ -169,8 +156,6 @@ void rattleback_state_rate_f32(const rattleback_constants_f32 *constants, float 
  *            5.8e-11), damping_matrix 7.5e-09 (seen 7.5e-09), stiffness_matrix 9.6e-07 (seen
  *            9.5e-07).
  * Cost: no operations.
- * On Cortex-M0+, -O2: 41 to 42 instructions, 84 B of code, 12 B of stack.
- * On Cortex-M4F, -O2: 41 instructions, 140 B of code, 4 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -195,8 +180,6 @@ void rattleback_linearised_f32(const rattleback_constants_f32 *constants, float 
  * Bound: proved, absolute, by rounding alone, on the whole ranges: energy_of_all 7e-07 J (seen
  *            4e-07); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 12 add, 5 sub, 39 mul, 1 div, 1 sqrt, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 13781 to 14014 instructions, 1128 B of code, 160 B of stack.
- * On Cortex-M4F, -O2: 266 instructions, 804 B of code, 92 B of stack.
  * Rests on: A_is_G, axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, rigid.
  */
@@ -231,8 +214,6 @@ void rattleback_energy_of_all_f32(const rattleback_constants_f32 *constants, flo
  * Singular: at alpha = pi/2 + k pi, alpha_dot_next, beta_next, beta_dot_next, W_next infinite, no
  *            number or beyond all measure.
  * Cost: 239 add, 224 sub, 860 mul, 12 div, 4 sqrt, 8 sin, 8 cos.
- * On Cortex-M0+, -O2: 171992 to 173898 instructions, 13140 B of code, 616 B of stack.
- * On Cortex-M4F, -O2: 2574 instructions, 8156 B of code, 476 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

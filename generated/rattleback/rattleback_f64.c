@@ -115,6 +115,9 @@ static _Bool rattleback_less_f64(const rattleback_pair_f64 a, const rattleback_p
     return (a.high < b.high) || ((a.high <= b.high) && (a.low < b.low));
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int rattleback_setup_f64(double m, double a, double b, double c, double h, double A, double B,
     double C, double D, double n, double g, rattleback_constants_f64 *constants)
 {

@@ -123,6 +123,9 @@ static _Bool reaction_wheel_satellite_less_f32(const reaction_wheel_satellite_pa
     return (a.high < b.high) || ((a.high <= b.high) && (a.low < b.low));
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int reaction_wheel_satellite_setup_f32(float J_xx, float J_yy, float J_zz, float J_xy, float J_xz,
     float J_yz, float I_w, reaction_wheel_satellite_constants_f32 *constants)
 {

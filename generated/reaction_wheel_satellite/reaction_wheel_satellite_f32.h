@@ -32,7 +32,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 9f25ba4d25faffda.
+ * Body of these files: sha256 1c257d08bddce6c7.
  */
 #ifndef REACTION_WHEEL_SATELLITE_F32_H
 #define REACTION_WHEEL_SATELLITE_F32_H
@@ -72,8 +72,6 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 66 operations on pairs.
- * On Cortex-M0+, -O2: 161586 to 165780 instructions, 2864 B of code, 1072 B of stack.
- * On Cortex-M4F, -O2: 3395 instructions, 2776 B of code, 916 B of stack.
  */
 int reaction_wheel_satellite_setup_f32(float J_xx, float J_yy, float J_zz, float J_xy, float J_xz,
     float J_yz, float I_w, reaction_wheel_satellite_constants_f32 *constants);
@@ -112,12 +110,10 @@ int reaction_wheel_satellite_setup_f32(float J_xx, float J_yy, float J_zz, float
  * Error: median 0.75, largest 9.4 u of the largest product or sum in the equation (of w_y_dot;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8348 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: w_x_dot 8.8e-07 rad/s^2 (seen
- *            6e-07), w_y_dot 5.9e-07 rad/s^2 (seen 4.2e-07), w_z_dot 9.1e-07 rad/s^2 (seen
- *            6.5e-07).
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: w_x_dot 8.2e-07 rad/s^2 (seen
+ *            6e-07), w_y_dot 5.8e-07 rad/s^2 (seen 4.2e-07), w_z_dot 9.1e-07 rad/s^2 (seen
+ *            6.3e-07).
  * Cost: 6 add, 14 sub, 26 mul.
- * On Cortex-M0+, -O2: 4599 to 4885 instructions, 484 B of code, 80 B of stack.
- * On Cortex-M4F, -O2: 67 instructions, 268 B of code, 8 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -157,12 +153,10 @@ void reaction_wheel_satellite_body_f32(const reaction_wheel_satellite_constants_
  * Error: median 0.51, largest 7.1 u of the largest product or sum in the equation (of s_2_dot;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8348 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: s_1_dot 6.5e-06 rad/s^2 (seen
- *            5.6e-06), s_2_dot 6.3e-06 rad/s^2 (seen 5.4e-06), s_3_dot 6.5e-06 rad/s^2 (seen
- *            5.5e-06).
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: s_1_dot 6.4e-06 rad/s^2 (seen
+ *            5.5e-06), s_2_dot 6.3e-06 rad/s^2 (seen 5.3e-06), s_3_dot 6.5e-06 rad/s^2 (seen
+ *            5.6e-06).
  * Cost: 6 add, 17 sub, 29 mul.
- * On Cortex-M0+, -O2: 5180 to 5425 instructions, 540 B of code, 88 B of stack.
- * On Cortex-M4F, -O2: 77 instructions, 308 B of code, 8 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */

@@ -123,6 +123,9 @@ static _Bool reaction_wheel_satellite_less_f64(const reaction_wheel_satellite_pa
     return (a.high < b.high) || ((a.high <= b.high) && (a.low < b.low));
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int reaction_wheel_satellite_setup_f64(double J_xx, double J_yy, double J_zz, double J_xy,
     double J_xz, double J_yz, double I_w, reaction_wheel_satellite_constants_f64 *constants)
 {

@@ -105,6 +105,9 @@ static rigid_body_pair_f64 rigid_body_power_of_two_f64(rigid_body_pair_f64 a)
     return (rigid_body_pair_f64){q - (0.9999999999999999 * q), 0.0};
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int rigid_body_setup_f64(double m, double I_xx, double I_yy, double I_zz, double I_xy, double I_xz,
     double I_yz, rigid_body_constants_f64 *constants)
 {

@@ -22,7 +22,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 04537a61bb54d7ef.
+ * Body of these files: sha256 7eadcf0026c974b7.
  */
 #ifndef RIGID_BODY_F64_H
 #define RIGID_BODY_F64_H
@@ -91,7 +91,6 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 123 operations on pairs.
- * On Cortex-M0+, -O2: 552601 to 577123 instructions, 12300 B of code, 3712 B of stack.
  */
 int rigid_body_setup_f64(double m, double I_xx, double I_yy, double I_zz, double I_xy, double I_xz,
     double I_yz, rigid_body_constants_f64 *constants);
@@ -130,11 +129,10 @@ int rigid_body_setup_f64(double m, double I_xx, double I_yy, double I_zz, double
  *            velocity_rate; 200000 samples of the ranges, 65536 searched from the worst); at 8354
  *            hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: position_rate 0 m/s (seen 0),
- *            attitude_rate 2.3e-15 1/s (seen 2.2e-15), velocity_rate 4.6e-14 m/s^2 (seen 2.3e-14),
- *            omega_dot 9.3e-14 rad/s^2 (seen 5.6e-14); assumed: quaternions given with |q|^2 in
+ *            attitude_rate 2.3e-15 1/s (seen 2.2e-15), velocity_rate 3.5e-14 m/s^2 (seen 2.3e-14),
+ *            omega_dot 9.8e-14 rad/s^2 (seen 5.6e-14); assumed: quaternions given with |q|^2 in
  *            0.999 .. 1.001.
  * Cost: 21 add, 16 sub, 59 mul, 1 neg.
- * On Cortex-M0+, -O2: 22397 to 22955 instructions, 1672 B of code, 256 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -163,11 +161,10 @@ void rigid_body_state_rate_f64(const rigid_body_constants_f64 *constants, const 
  *            200000 samples of the ranges, 65536 searched from the worst); at 8354 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: position_rate 0 m/s (seen 0),
- *            attitude_rate 2.3e-15 1/s (seen 2.2e-15), velocity_rate 3.8e-14 m/s^2 (seen 2.1e-14),
- *            omega_dot 6.8e-14 rad/s^2 (seen 3.8e-14), jacobian 6.4e-14 (seen 3.4e-14); assumed:
+ *            attitude_rate 2.3e-15 1/s (seen 2.2e-15), velocity_rate 3.7e-14 m/s^2 (seen 2e-14),
+ *            omega_dot 6.3e-14 rad/s^2 (seen 4e-14), jacobian 6.4e-14 (seen 4e-14); assumed:
  *            quaternions given with |q|^2 in 0.999 .. 1.001.
  * Cost: 43 add, 30 sub, 98 mul, 11 neg.
- * On Cortex-M0+, -O2: 40168 to 40881 instructions, 3736 B of code, 424 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -177,9 +174,7 @@ void rigid_body_state_rate_jacobian_f64(const rigid_body_constants_f64 *constant
     const double force[3], const double moment[3], double position_rate[3], double attitude_rate[4],
     double velocity_rate[3], double omega_dot[3], double jacobian[66]);
 
-/* The same, the whole matrix: 247 entries.
- * On Cortex-M0+, -O2: 41808 to 42435 instructions, 6968 B of code, 960 B of stack.
- */
+/* The same, the whole matrix: 247 entries. */
 void rigid_body_state_rate_jacobian_dense_f64(const rigid_body_constants_f64 *constants,
     const double attitude[4], const double velocity[3], const double omega[3],
     const double force[3], const double moment[3], double position_rate[3], double attitude_rate[4],
@@ -200,7 +195,6 @@ void rigid_body_state_rate_jacobian_dense_f64(const rigid_body_constants_f64 *co
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 5.2e-11 J (seen
  *            4.5e-11).
  * Cost: 5 add, 3 sub, 13 mul.
- * On Cortex-M0+, -O2: 4931 to 5097 instructions, 376 B of code, 128 B of stack.
  * Rests on: A_is_G, body_triad, body_triad_is_orthonormal, constant_mass, rigid.
  */
 void rigid_body_kinetic_energy_f64(const rigid_body_constants_f64 *constants,
@@ -227,7 +221,6 @@ void rigid_body_kinetic_energy_f64(const rigid_body_constants_f64 *constants,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 1.3e-13 N m (seen
  *            9.3e-14).
  * Cost: 7 add, 10 sub, 23 mul.
- * On Cortex-M0+, -O2: 9247 to 9552 instructions, 732 B of code, 176 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */

@@ -113,6 +113,9 @@ static rigid_body_steps_pair_f32 rigid_body_steps_power_of_two_f32(rigid_body_st
     return (rigid_body_steps_pair_f32){q - (0.99999994F * q), 0.0F};
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int rigid_body_steps_setup_f32(float m, float I_xx, float I_yy, float I_zz, float I_xy, float I_xz,
     float I_yz, rigid_body_steps_constants_f32 *constants)
 {

@@ -24,7 +24,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 d3a984156be759ce.
+ * Body of these files: sha256 fd54546d37a58eae.
  */
 #ifndef RIGID_BODY_STEPS_F32_H
 #define RIGID_BODY_STEPS_F32_H
@@ -82,8 +82,6 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 119 operations on pairs.
- * On Cortex-M0+, -O2: 258025 to 263907 instructions, 5032 B of code, 1776 B of stack.
- * On Cortex-M4F, -O2: 5271 instructions, 4352 B of code, 1596 B of stack.
  */
 int rigid_body_steps_setup_f32(float m, float I_xx, float I_yy, float I_zz, float I_xy, float I_xz,
     float I_yz, rigid_body_steps_constants_f32 *constants);
@@ -109,14 +107,12 @@ int rigid_body_steps_setup_f32(float m, float I_xx, float I_yy, float I_zz, floa
  *            product of what the step adds, by rounding alone (of omega_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8282 hard samples 9.5 u (of
  *            attitude_next, turned, ill-conditioned).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: position_next 4.2e-06 m (seen
- *            4e-06), attitude_next 1.3e-06 (seen 1.5e-07), velocity_next 4.2e-06 m/s (seen
- *            2.1e-06), omega_next 3.1e-06 rad/s (seen 9.5e-07); assumed: quaternions given with
- *            |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 .. 1.1.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: position_next 4.1e-06 m (seen
+ *            4e-06), attitude_next 6.1e-07 (seen 1.5e-07), velocity_next 4.3e-06 m/s (seen
+ *            2.1e-06), omega_next 3e-06 rad/s (seen 9.8e-07); assumed: quaternions given with
+ *            |q|^2 in 0.999 .. 1.001.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 204 add, 64 sub, 363 mul, 1 div, 4 neg, 1 sqrt.
- * On Cortex-M0+, -O2: 62725 to 64119 instructions, 1528 B of code, 16 B of tables, 408 B of stack.
- * On Cortex-M4F, -O2: 1391 instructions, 1012 B of code, 16 B of tables, 364 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -151,9 +147,6 @@ void rigid_body_steps_step_rk4_f32(const rigid_body_steps_constants_f32 *constan
  * Bound: not proved: 3978 operations are more than the 2000 tried.
  * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.
  * Cost: 2322 add, 460 sub, 3223 mul, 1 div, 250 neg, 1 sqrt.
- * On Cortex-M0+, -O2: 510071 to 514414 instructions, 6968 B of code, 22 B of tables, 1200 B of
- *            stack.
- * On Cortex-M4F, -O2: 9887 instructions, 4624 B of code, 22 B of tables, 1164 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -163,11 +156,7 @@ void rigid_body_steps_step_rk4_jacobian_f32(const rigid_body_steps_constants_f32
     const float force[3], const float moment[3], float time_step, float position_next[3],
     float attitude_next[4], float velocity_next[3], float omega_next[3], float jacobian[145]);
 
-/* The same, the whole matrix: 247 entries.
- * On Cortex-M0+, -O2: 511857 to 516753 instructions, 7064 B of code, 167 B of tables, 1840 B of
- *            stack.
- * On Cortex-M4F, -O2: 11253 instructions, 4716 B of code, 167 B of tables, 1796 B of stack.
- */
+/* The same, the whole matrix: 247 entries. */
 void rigid_body_steps_step_rk4_jacobian_dense_f32(const rigid_body_steps_constants_f32 *constants,
     const float position[3], const float attitude[4], const float velocity[3], const float omega[3],
     const float force[3], const float moment[3], float time_step, float position_next[3],

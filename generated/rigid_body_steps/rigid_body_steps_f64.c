@@ -113,6 +113,9 @@ static rigid_body_steps_pair_f64 rigid_body_steps_power_of_two_f64(rigid_body_st
     return (rigid_body_steps_pair_f64){q - (0.9999999999999999 * q), 0.0};
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int rigid_body_steps_setup_f64(double m, double I_xx, double I_yy, double I_zz, double I_xy,
     double I_xz, double I_yz, rigid_body_steps_constants_f64 *constants)
 {

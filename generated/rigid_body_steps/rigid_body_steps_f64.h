@@ -22,7 +22,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 c83a3843beca7d88.
+ * Body of these files: sha256 cd712209a03f2054.
  */
 #ifndef RIGID_BODY_STEPS_F64_H
 #define RIGID_BODY_STEPS_F64_H
@@ -84,7 +84,6 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 119 operations on pairs.
- * On Cortex-M0+, -O2: 537162 to 561060 instructions, 11372 B of code, 3472 B of stack.
  */
 int rigid_body_steps_setup_f64(double m, double I_xx, double I_yy, double I_zz, double I_xy,
     double I_xz, double I_yz, rigid_body_steps_constants_f64 *constants);
@@ -111,13 +110,11 @@ int rigid_body_steps_setup_f64(double m, double I_xx, double I_yy, double I_zz, 
  *            the ranges, 65536 searched from the worst); at 8282 hard samples 1.5e+03 u (of
  *            attitude_next, turned, ill-conditioned).
  * Bound: proved, absolute, by rounding alone, on the whole ranges: position_next 7.7e-15 m (seen
- *            7.4e-15), attitude_next 2.4e-15 (seen 2.8e-16), velocity_next 7.8e-15 m/s (seen
- *            3.8e-15), omega_next 5.8e-15 rad/s (seen 1.8e-15); assumed: quaternions given with
- *            |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 .. 1.1.
+ *            7.4e-15), attitude_next 1.2e-15 (seen 2.7e-16), velocity_next 8e-15 m/s (seen
+ *            3.8e-15), omega_next 5.6e-15 rad/s (seen 1.6e-15); assumed: quaternions given with
+ *            |q|^2 in 0.999 .. 1.001.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 204 add, 64 sub, 363 mul, 1 div, 4 neg, 1 sqrt.
- * On Cortex-M0+, -O2: 144618 to 146217 instructions, 2348 B of code, 32 B of tables, 808 B of
- *            stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -151,8 +148,6 @@ void rigid_body_steps_step_rk4_f64(const rigid_body_steps_constants_f64 *constan
  * Bound: not proved: 3978 operations are more than the 2000 tried.
  * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.
  * Cost: 2322 add, 460 sub, 3223 mul, 1 div, 250 neg, 1 sqrt.
- * On Cortex-M0+, -O2: 1084207 to 1091065 instructions, 11284 B of code, 38 B of tables, 2432 B of
- *            stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -163,10 +158,7 @@ void rigid_body_steps_step_rk4_jacobian_f64(const rigid_body_steps_constants_f64
     double position_next[3], double attitude_next[4], double velocity_next[3], double omega_next[3],
     double jacobian[145]);
 
-/* The same, the whole matrix: 247 entries.
- * On Cortex-M0+, -O2: 1087485 to 1094294 instructions, 11428 B of code, 183 B of tables, 3656 B of
- *            stack.
- */
+/* The same, the whole matrix: 247 entries. */
 void rigid_body_steps_step_rk4_jacobian_dense_f64(const rigid_body_steps_constants_f64 *constants,
     const double position[3], const double attitude[4], const double velocity[3],
     const double omega[3], const double force[3], const double moment[3], double time_step,

@@ -169,6 +169,9 @@ static rod_wire_vertical_shaft_pair_f32 rod_wire_vertical_shaft_cos_f32(rod_wire
     return rod_wire_vertical_shaft_sine_f32(a, 1.0F);
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int rod_wire_vertical_shaft_setup_f32(float W, float L, float beta, float w, float g,
     rod_wire_vertical_shaft_constants_f32 *constants)
 {

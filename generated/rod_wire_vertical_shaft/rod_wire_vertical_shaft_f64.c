@@ -181,6 +181,9 @@ static rod_wire_vertical_shaft_pair_f64 rod_wire_vertical_shaft_cos_f64(rod_wire
     return rod_wire_vertical_shaft_sine_f64(a, 1.0);
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int rod_wire_vertical_shaft_setup_f64(double W, double L, double beta, double w, double g,
     rod_wire_vertical_shaft_constants_f64 *constants)
 {

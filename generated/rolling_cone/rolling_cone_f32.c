@@ -158,6 +158,9 @@ static rolling_cone_pair_f32 rolling_cone_cos_f32(rolling_cone_pair_f32 a)
     return rolling_cone_sine_f32(a, 1.0F);
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int rolling_cone_setup_f32(float m, float h, float r, float a, float g,
     rolling_cone_constants_f32 *constants)
 {

@@ -170,6 +170,9 @@ static rolling_cone_pair_f64 rolling_cone_cos_f64(rolling_cone_pair_f64 a)
     return rolling_cone_sine_f64(a, 1.0);
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int rolling_cone_setup_f64(double m, double h, double r, double a, double g,
     rolling_cone_constants_f64 *constants)
 {

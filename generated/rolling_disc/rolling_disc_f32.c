@@ -96,6 +96,9 @@ static rolling_disc_pair_f32 rolling_disc_div_f32(rolling_disc_pair_f32 a, rolli
     return rolling_disc_add_f32(rolling_disc_add_f32(q1, q2), q3);
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int rolling_disc_setup_f32(float m, float r, float n, float g,
     rolling_disc_constants_f32 *constants)
 {

@@ -22,7 +22,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 49d9997a904f653e.
+ * Body of these files: sha256 5e050fa83abbc4eb.
  */
 #ifndef ROLLING_DISC_F32_H
 #define ROLLING_DISC_F32_H
@@ -67,8 +67,6 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 18 operations on pairs.
- * On Cortex-M0+, -O2: 45540 to 47227 instructions, 1696 B of code, 536 B of stack.
- * On Cortex-M4F, -O2: 880 instructions, 1228 B of code, 408 B of stack.
  */
 int rolling_disc_setup_f32(float m, float r, float n, float g,
     rolling_disc_constants_f32 *constants);
@@ -110,8 +108,6 @@ int rolling_disc_setup_f32(float m, float r, float n, float g,
  *            own within 0.79 ulp.
  * Singular: at lean = pi/2 + k pi, W_rate, s_rate infinite, no number or beyond all measure.
  * Cost: 2 add, 1 sub, 13 mul, 1 div, 1 neg, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 9166 to 10661 instructions, 780 B of code, 128 B of stack.
- * On Cortex-M4F, -O2: 225 to 227 instructions, 616 B of code, 84 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -153,8 +149,6 @@ void rolling_disc_state_rate_f32(const rolling_disc_constants_f32 *constants, fl
  * Singular: at lean = pi/2 + k pi, W_rate, s_rate, jacobian infinite, no number or beyond all
  *            measure.
  * Cost: 7 add, 4 sub, 35 mul, 1 div, 2 neg, 2 sin, 2 cos.
- * On Cortex-M0+, -O2: 12486 to 13981 instructions, 1112 B of code, 168 B of stack.
- * On Cortex-M4F, -O2: 278 to 280 instructions, 828 B of code, 84 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -163,10 +157,7 @@ void rolling_disc_state_rate_jacobian_f32(const rolling_disc_constants_f32 *cons
     float lean_dot, float yaw, float W, float s, float *lean_rate, float *lean_dot_rate,
     float *yaw_rate, float *x_rate, float *y_rate, float *W_rate, float *s_rate, float jacobian[16]);
 
-/* The same, the whole matrix: 49 entries.
- * On Cortex-M0+, -O2: 12540 to 13976 instructions, 1236 B of code, 168 B of stack.
- * On Cortex-M4F, -O2: 312 to 314 instructions, 912 B of code, 84 B of stack.
- */
+/* The same, the whole matrix: 49 entries. */
 void rolling_disc_state_rate_jacobian_dense_f32(const rolling_disc_constants_f32 *constants,
     float lean, float lean_dot, float yaw, float W, float s, float *lean_rate, float *lean_dot_rate,
     float *yaw_rate, float *x_rate, float *y_rate, float *W_rate, float *s_rate, float jacobian[49]);
@@ -184,20 +175,12 @@ void rolling_disc_state_rate_jacobian_dense_f32(const rolling_disc_constants_f32
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_dot = omega x rho_i   [lecture step velocity_of_particle]
  * Postcondition: l_N_dot = l_dot + Omega x l   [lecture step transport_theorem]
- * In this scene: mass_matrix[0] = 5/4*m*r^2
- * In this scene: mass_matrix[4] = 1/4*m*r^2
- * In this scene: mass_matrix[8] = 3/2*m*r^2
- * In this scene: damping_matrix[1] = 1/2*m*r^2*n
- * In this scene: damping_matrix[3] = -3/2*m*r^2*n
- * In this scene: stiffness_matrix[0] = -m*r*g
  * Error: median 0, largest 1 u of the largest product or sum in the equation (of mass_matrix;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8318 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: mass_matrix 3.8e-09 (seen
  *            3.7e-09), damping_matrix 6e-08 (seen 6e-08), stiffness_matrix 6e-08 (seen 6e-08).
  * Cost: no operations.
- * On Cortex-M0+, -O2: 36 instructions, 72 B of code, 12 B of stack.
- * On Cortex-M4F, -O2: 36 instructions, 132 B of code, 4 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -225,8 +208,6 @@ void rolling_disc_linearised_f32(const rolling_disc_constants_f32 *constants, fl
  * Bound: proved, absolute, by rounding alone, on the whole ranges: steady 4.9e-05 rad/s^2 (seen
  *            3.5e-05); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 2 add, 5 mul, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 4258 to 5062 instructions, 632 B of code, 112 B of stack.
- * On Cortex-M4F, -O2: 108 to 109 instructions, 500 B of code, 44 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -263,8 +244,6 @@ void rolling_disc_steady_f32(const rolling_disc_constants_f32 *constants, float 
  * Bound: proved, absolute, by rounding alone, on the whole ranges: ground 2.7e-05 N (seen
  *            1.7e-05); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 3 add, 3 sub, 17 mul, 1 div, 1 neg, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 6422 to 7245 instructions, 808 B of code, 136 B of stack.
- * On Cortex-M4F, -O2: 133 to 134 instructions, 596 B of code, 52 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -290,8 +269,6 @@ void rolling_disc_ground_f32(const rolling_disc_constants_f32 *constants, float 
  * Bound: proved, absolute, by rounding alone, on the whole ranges: energy_of_all 6.4e-06 J (seen
  *            5.3e-06); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 5 add, 13 mul, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 5453 to 6252 instructions, 736 B of code, 112 B of stack.
- * On Cortex-M4F, -O2: 122 to 123 instructions, 552 B of code, 52 B of stack.
  * Rests on: A_is_G, axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, rigid.
  */
@@ -326,9 +303,9 @@ void rolling_disc_energy_of_all_f32(const rolling_disc_constants_f32 *constants,
  *            largest product of what the step adds, by rounding alone (of x_next; 200000 samples
  *            of the ranges, 65536 searched from the worst); at 8246 hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: lean_next 8.1e-08 rad (seen
- *            6.8e-08), lean_dot_next 1.3e-06 rad/s (seen 5.6e-07), yaw_next 1.7e-07 rad (seen
+ *            6.8e-08), lean_dot_next 1.3e-06 rad/s (seen 5.3e-07), yaw_next 1.7e-07 rad (seen
  *            1.4e-07), x_next 5.3e-07 m (seen 4.9e-07), y_next 5.3e-07 m (seen 4.9e-07), W_next
- *            6e-06 rad/s (seen 2.8e-06), s_next 7.9e-06 rad/s (seen 3.6e-06); assumed: sines and
+ *            5.9e-06 rad/s (seen 3.3e-06), s_next 7.7e-06 rad/s (seen 4e-06); assumed: sines and
  *            cosines of our own within 0.79 ulp.
  * Singular: at lean = pi/2 + k pi, lean_next, lean_dot_next, yaw_next, x_next, y_next, W_next,
  *            s_next infinite, no number or beyond all measure.
@@ -341,8 +318,6 @@ void rolling_disc_energy_of_all_f32(const rolling_disc_constants_f32 *constants,
  * Singular: where a divisor vanishes, as at lean = 1.551, lean_dot = 3.815, W = 1.724, s = -11.62,
  *            time_step = 0.005105, W_next, s_next infinite, no number or beyond all measure.
  * Cost: 47 add, 8 sub, 87 mul, 4 div, 8 sin, 8 cos.
- * On Cortex-M0+, -O2: 43237 to 49144 instructions, 1964 B of code, 296 B of stack.
- * On Cortex-M4F, -O2: 956 to 964 instructions, 1452 B of code, 260 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

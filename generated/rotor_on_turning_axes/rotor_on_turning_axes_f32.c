@@ -93,6 +93,9 @@ DERIVE_APART static rotor_on_turning_axes_pair_f32 rotor_on_turning_axes_mul_f32
     return (rotor_on_turning_axes_pair_f32){high, e - (high - p.high)};
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int rotor_on_turning_axes_setup_f32(float A, float C,
     rotor_on_turning_axes_constants_f32 *constants)
 {

@@ -19,7 +19,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 fcd8d51db2f21287.
+ * Body of these files: sha256 6d8009b3338e1f5e.
  */
 #ifndef ROTOR_ON_TURNING_AXES_F32_H
 #define ROTOR_ON_TURNING_AXES_F32_H
@@ -52,8 +52,6 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 3 operations on pairs.
- * On Cortex-M0+, -O2: 4739 to 4811 instructions, 600 B of code, 176 B of stack.
- * On Cortex-M4F, -O2: 118 instructions, 368 B of code, 56 B of stack.
  */
 int rotor_on_turning_axes_setup_f32(float A, float C,
     rotor_on_turning_axes_constants_f32 *constants);
@@ -79,8 +77,6 @@ int rotor_on_turning_axes_setup_f32(float A, float C,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 0.00013 N m (seen
  *            0.00012).
  * Cost: 2 add, 2 sub, 7 mul.
- * On Cortex-M0+, -O2: 1151 to 1192 instructions, 124 B of code, 56 B of stack.
- * On Cortex-M4F, -O2: 20 instructions, 80 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -105,8 +101,6 @@ void rotor_on_turning_axes_moment_f32(const rotor_on_turning_axes_constants_f32 
  * Bound: proved, absolute, by rounding alone, on the whole ranges: angular_momentum 4.8e-05 kg
  *            m^2/s (seen 4.7e-05).
  * Cost: 1 add, 3 mul.
- * On Cortex-M0+, -O2: 439 to 480 instructions, 52 B of code, 56 B of stack.
- * On Cortex-M4F, -O2: 11 instructions, 44 B of code, 0 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void rotor_on_turning_axes_angular_momentum_f32(const rotor_on_turning_axes_constants_f32 *constants,
@@ -139,8 +133,6 @@ void rotor_on_turning_axes_angular_momentum_f32(const rotor_on_turning_axes_cons
  * Bound: proved, absolute, by rounding alone, on the whole ranges: rate_in_axes 4.1e-06 N m (seen
  *            4e-06), rate_absolute 0.00013 N m (seen 0.00012).
  * Cost: 2 add, 2 sub, 7 mul.
- * On Cortex-M0+, -O2: 1151 to 1200 instructions, 140 B of code, 64 B of stack.
- * On Cortex-M4F, -O2: 23 instructions, 92 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, rate_seen_from_N, rigid.
  */
 void rotor_on_turning_axes_angular_momentum_rate_f32(const rotor_on_turning_axes_constants_f32 *constants,
@@ -162,8 +154,6 @@ void rotor_on_turning_axes_angular_momentum_rate_f32(const rotor_on_turning_axes
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 0.036 J (seen
  *            0.028).
  * Cost: 3 add, 5 mul.
- * On Cortex-M0+, -O2: 789 to 861 instructions, 84 B of code, 56 B of stack.
- * On Cortex-M4F, -O2: 12 instructions, 48 B of code, 0 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void rotor_on_turning_axes_kinetic_energy_f32(const rotor_on_turning_axes_constants_f32 *constants,

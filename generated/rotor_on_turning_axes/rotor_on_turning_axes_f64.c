@@ -93,6 +93,9 @@ DERIVE_APART static rotor_on_turning_axes_pair_f64 rotor_on_turning_axes_mul_f64
     return (rotor_on_turning_axes_pair_f64){high, e - (high - p.high)};
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int rotor_on_turning_axes_setup_f64(double A, double C,
     rotor_on_turning_axes_constants_f64 *constants)
 {

@@ -105,6 +105,9 @@ static _Bool satellite_at_most_f32(const satellite_pair_f32 a, const satellite_p
     return (a.high < b.high) || ((a.high <= b.high) && (a.low <= b.low));
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int satellite_setup_f32(float I_xx, float I_yy, float I_zz, satellite_constants_f32 *constants)
 {
     const satellite_pair_f32 s0 = satellite_div_f32((satellite_pair_f32){1.0F, 0.0F}, (satellite_pair_f32){I_xx, 0.0F});

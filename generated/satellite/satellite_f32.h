@@ -20,7 +20,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 2c667f232c4f5a8f.
+ * Body of these files: sha256 88c3a57ff479b2f5.
  */
 #ifndef SATELLITE_F32_H
 #define SATELLITE_F32_H
@@ -65,8 +65,6 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 24 operations on pairs.
- * On Cortex-M0+, -O2: 122369 to 124615 instructions, 2780 B of code, 656 B of stack.
- * On Cortex-M4F, -O2: 2662 to 2666 instructions, 1944 B of code, 444 B of stack.
  */
 int satellite_setup_f32(float I_xx, float I_yy, float I_zz, satellite_constants_f32 *constants);
 
@@ -95,11 +93,9 @@ int satellite_setup_f32(float I_xx, float I_yy, float I_zz, satellite_constants_
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_rate 1.2e-06 1/s (seen
- *            1.2e-06), omega_dot 1.2e-05 rad/s^2 (seen 1.1e-05); assumed: quaternions given with
+ *            1.2e-06), omega_dot 1.2e-05 rad/s^2 (seen 1e-05); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 7 add, 4 sub, 24 mul, 1 neg.
- * On Cortex-M0+, -O2: 3701 to 3884 instructions, 444 B of code, 104 B of stack.
- * On Cortex-M4F, -O2: 63 instructions, 248 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -121,13 +117,11 @@ void satellite_state_rate_f32(const satellite_constants_f32 *constants, const fl
  * Error: median 0.26, largest 5.8 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of omega_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 6.1e-07 (seen
- *            1.6e-07), omega_next 1.2e-06 rad/s (seen 8.9e-07); assumed: quaternions given with
- *            |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 .. 1.1.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 4.4e-07 (seen
+ *            1.6e-07), omega_next 1.2e-06 rad/s (seen 8.5e-07); assumed: quaternions given with
+ *            |q|^2 in 0.999 .. 1.001.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 71 add, 22 sub, 117 mul, 1 div, 1 sqrt.
- * On Cortex-M0+, -O2: 20849 to 21431 instructions, 1948 B of code, 184 B of stack.
- * On Cortex-M4F, -O2: 254 instructions, 1020 B of code, 80 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -151,14 +145,12 @@ void satellite_step_rk4_f32(const satellite_constants_f32 *constants, const floa
  * Error: median 0.26, largest 6.7 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of jacobian; 200000 samples of the
  *            ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 7.1e-07 (seen
- *            1.6e-07), omega_next 1.2e-06 rad/s (seen 7.9e-07), jacobian 8.3e-06 (seen 4.4e-07);
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 4.5e-07 (seen
+ *            1.6e-07), omega_next 1.2e-06 rad/s (seen 8.3e-07), jacobian 5.6e-06 (seen 4.6e-07);
  *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 ..
  *            1.1.
  * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.
  * Cost: 328 add, 110 sub, 458 mul, 2 div, 12 neg, 1 sqrt.
- * On Cortex-M0+, -O2: 83938 to 87103 instructions, 8624 B of code, 408 B of stack.
- * On Cortex-M4F, -O2: 1273 instructions, 5188 B of code, 312 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -167,10 +159,7 @@ void satellite_step_rk4_jacobian_f32(const satellite_constants_f32 *constants,
     const float attitude[4], const float omega[3], const float moment[3], float time_step,
     float attitude_next[4], float omega_next[3], float jacobian[58]);
 
-/* The same, the whole matrix: 70 entries.
- * On Cortex-M0+, -O2: 85780 to 87259 instructions, 8692 B of code, 408 B of stack.
- * On Cortex-M4F, -O2: 1286 instructions, 5212 B of code, 312 B of stack.
- */
+/* The same, the whole matrix: 70 entries. */
 void satellite_step_rk4_jacobian_dense_f32(const satellite_constants_f32 *constants,
     const float attitude[4], const float omega[3], const float moment[3], float time_step,
     float attitude_next[4], float omega_next[3], float jacobian[70]);
@@ -191,14 +180,11 @@ void satellite_step_rk4_jacobian_dense_f32(const satellite_constants_f32 *consta
  * Error: median 0.26, largest 5.4 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of omega_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 7.1e-07 (seen
- *            1.5e-07), omega_next 1.2e-06 rad/s (seen 7.7e-07), jacobian 5.3e-07 (seen 1.8e-07);
- *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 ..
- *            1.1.
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 4.5e-07 (seen
+ *            1.5e-07), omega_next 1.2e-06 rad/s (seen 7.8e-07), jacobian 5.3e-07 (seen 1.8e-07);
+ *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 304 add, 89 sub, 394 mul, 6 div, 1 sqrt.
- * On Cortex-M0+, -O2: 74314 to 75905 instructions, 7488 B of code, 416 B of stack.
- * On Cortex-M4F, -O2: 1114 instructions, 4524 B of code, 304 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -207,10 +193,7 @@ void satellite_step_rk4_tangent_f32(const satellite_constants_f32 *constants,
     const float attitude[4], const float omega[3], const float moment[3], float time_step,
     float attitude_next[4], float omega_next[3], float jacobian[45]);
 
-/* The same, the whole matrix: 54 entries.
- * On Cortex-M0+, -O2: 73874 to 76052 instructions, 7528 B of code, 416 B of stack.
- * On Cortex-M4F, -O2: 1124 instructions, 4544 B of code, 304 B of stack.
- */
+/* The same, the whole matrix: 54 entries. */
 void satellite_step_rk4_tangent_dense_f32(const satellite_constants_f32 *constants,
     const float attitude[4], const float omega[3], const float moment[3], float time_step,
     float attitude_next[4], float omega_next[3], float jacobian[54]);
@@ -231,14 +214,12 @@ void satellite_step_rk4_tangent_dense_f32(const satellite_constants_f32 *constan
  * Error: median 0.26, largest 6.8 u of the largest component, before or after, or of the largest
  *            product of what the step adds, by rounding alone (of jacobian; 200000 samples of the
  *            ranges, 65536 searched from the worst); at 8270 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 7.1e-07 (seen
- *            1.7e-07), omega_next 1.2e-06 rad/s (seen 8e-07), jacobian 1.2e-06 (seen 5.5e-07);
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 4.5e-07 (seen
+ *            1.7e-07), omega_next 1.2e-06 rad/s (seen 8.7e-07), jacobian 1.2e-06 (seen 5.9e-07);
  *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 ..
  *            1.1.
  * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.
  * Cost: 254 add, 170 sub, 479 mul, 2 div, 3 neg, 1 sqrt.
- * On Cortex-M0+, -O2: 86706 to 89001 instructions, 8296 B of code, 512 B of stack.
- * On Cortex-M4F, -O2: 1320 instructions, 5364 B of code, 360 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -247,10 +228,7 @@ void satellite_step_rk4_sensitivity_f32(const satellite_constants_f32 *constants
     const float attitude[4], const float omega[3], const float moment[3], float time_step,
     float attitude_next[4], float omega_next[3], float jacobian[21]);
 
-/* The same, the whole matrix: 21 entries.
- * On Cortex-M0+, -O2: 87187 to 89091 instructions, 8324 B of code, 536 B of stack.
- * On Cortex-M4F, -O2: 1321 instructions, 5368 B of code, 360 B of stack.
- */
+/* The same, the whole matrix: 21 entries. */
 void satellite_step_rk4_sensitivity_dense_f32(const satellite_constants_f32 *constants,
     const float attitude[4], const float omega[3], const float moment[3], float time_step,
     float attitude_next[4], float omega_next[3], float jacobian[21]);
@@ -273,8 +251,6 @@ void satellite_step_rk4_sensitivity_dense_f32(const satellite_constants_f32 *con
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 95 add, 61 sub, 156 mul, 11 div, 3 sqrt, 2 sin, 2 cos, 8 abs, 10 less, 2 power_of_two, 14
  *            select, 1 splitter.
- * On Cortex-M0+, -O2: 38617 to 39517 instructions, 4160 B of code, 224 B of stack.
- * On Cortex-M4F, -O2: 601 instructions, 2440 B of code, 108 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -295,12 +271,10 @@ void satellite_step_lie_f32(const satellite_constants_f32 *constants, const floa
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples 5.2 u (of
  *            omega_next, denormal).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 7e-06 (seen
- *            1.1e-07), omega_next 4.6e-05 rad/s (seen 1.5e-06); assumed: quaternions given with
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 4.7e-06 (seen
+ *            1e-07), omega_next 2.5e-05 rad/s (seen 1.7e-06); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 531 add, 100 sub, 585 mul, 54 div, 44 neg, 2 less, 24 select.
- * On Cortex-M0+, -O2: 135516 to 138213 instructions, 11956 B of code, 496 B of stack.
- * On Cortex-M4F, -O2: 1603 to 1629 instructions, 6772 B of code, 264 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -324,8 +298,6 @@ void satellite_step_split_f32(const satellite_constants_f32 *constants, const fl
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
  * Bound: not proved: 6491 operations are more than the 2000 tried.
  * Cost: 2396 add, 916 sub, 3419 mul, 22 div, 20 neg, 9 sqrt, 28 abs, 3 less, 3 select.
- * On Cortex-M0+, -O2: 562900 to 684948 instructions, 2644 B of code, 1104 B of stack.
- * On Cortex-M4F, -O2: 13877 instructions, 2176 B of code, 1072 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.

@@ -105,6 +105,9 @@ static _Bool satellite_at_most_f64(const satellite_pair_f64 a, const satellite_p
     return (a.high < b.high) || ((a.high <= b.high) && (a.low <= b.low));
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int satellite_setup_f64(double I_xx, double I_yy, double I_zz, satellite_constants_f64 *constants)
 {
     const satellite_pair_f64 s0 = satellite_div_f64((satellite_pair_f64){1.0, 0.0}, (satellite_pair_f64){I_xx, 0.0});

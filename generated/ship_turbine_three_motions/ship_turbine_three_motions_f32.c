@@ -105,6 +105,9 @@ static ship_turbine_three_motions_pair_f32 ship_turbine_three_motions_div_f32(sh
     return ship_turbine_three_motions_add_f32(ship_turbine_three_motions_add_f32(q1, q2), q3);
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int ship_turbine_three_motions_setup_f32(float m, float kz, float ws, float a, float b, float g,
     float turn, float pitch, ship_turbine_three_motions_constants_f32 *constants)
 {

@@ -38,7 +38,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 0f7a563fd87160ae.
+ * Body of these files: sha256 0511e567dc139cbe.
  */
 #ifndef SHIP_TURBINE_THREE_MOTIONS_F32_H
 #define SHIP_TURBINE_THREE_MOTIONS_F32_H
@@ -71,8 +71,6 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 16 operations on pairs.
- * On Cortex-M0+, -O2: 40129 to 41671 instructions, 1440 B of code, 432 B of stack.
- * On Cortex-M4F, -O2: 787 instructions, 1096 B of code, 360 B of stack.
  */
 int ship_turbine_three_motions_setup_f32(float m, float kz, float ws, float a, float b, float g,
     float turn, float pitch, ship_turbine_three_motions_constants_f32 *constants);
@@ -90,8 +88,6 @@ int ship_turbine_three_motions_setup_f32(float m, float kz, float ws, float a, f
  * Bound: proved, absolute, by rounding alone, on the whole ranges: A_roll 0.00013 N (seen
  *            0.00012), B_roll 0.00013 N (seen 0.00012).
  * Cost: no operations.
- * On Cortex-M0+, -O2: 5 to 6 instructions, 12 B of code, 0 B of stack.
- * On Cortex-M4F, -O2: 5 instructions, 12 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -111,8 +107,6 @@ void ship_turbine_three_motions_roll_case_f32(const ship_turbine_three_motions_c
  * Bound: proved, absolute, by rounding alone, on the whole ranges: A_turn 0.00049 N (seen
  *            0.00049), B_turn 0.00098 N (seen 0.00098).
  * Cost: no operations.
- * On Cortex-M0+, -O2: 5 to 6 instructions, 12 B of code, 0 B of stack.
- * On Cortex-M4F, -O2: 5 instructions, 12 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -133,8 +127,6 @@ void ship_turbine_three_motions_turn_case_f32(const ship_turbine_three_motions_c
  * Bound: proved, absolute, by rounding alone, on the whole ranges: A_pitch 0.00013 N (seen
  *            0.00012), B_pitch 0.00013 N (seen 0.00012).
  * Cost: no operations.
- * On Cortex-M0+, -O2: 5 to 6 instructions, 12 B of code, 0 B of stack.
- * On Cortex-M4F, -O2: 5 instructions, 12 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -155,8 +147,6 @@ void ship_turbine_three_motions_pitch_case_f32(const ship_turbine_three_motions_
  * Bound: proved, absolute, by rounding alone, on the whole ranges: pitch_horizontal_couple 0.002 N
  *            m (seen 0.002).
  * Cost: no operations.
- * On Cortex-M0+, -O2: 3 instructions, 8 B of code, 0 B of stack.
- * On Cortex-M4F, -O2: 3 instructions, 8 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */

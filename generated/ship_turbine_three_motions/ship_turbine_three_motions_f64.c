@@ -105,6 +105,9 @@ static ship_turbine_three_motions_pair_f64 ship_turbine_three_motions_div_f64(sh
     return ship_turbine_three_motions_add_f64(ship_turbine_three_motions_add_f64(q1, q2), q3);
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int ship_turbine_three_motions_setup_f64(double m, double kz, double ws, double a, double b,
     double g, double turn, double pitch, ship_turbine_three_motions_constants_f64 *constants)
 {

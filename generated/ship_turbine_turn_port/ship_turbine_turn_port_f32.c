@@ -108,6 +108,9 @@ DERIVE_APART static ship_turbine_turn_port_pair_f32 ship_turbine_turn_port_div_f
     return ship_turbine_turn_port_add_f32(ship_turbine_turn_port_add_f32(q1, q2), q3);
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int ship_turbine_turn_port_setup_f32(float m, float k, float p, float v, float R, float a, float b,
     float g, ship_turbine_turn_port_constants_f32 *constants)
 {

@@ -108,6 +108,9 @@ DERIVE_APART static ship_turbine_turn_port_pair_f64 ship_turbine_turn_port_div_f
     return ship_turbine_turn_port_add_f64(ship_turbine_turn_port_add_f64(q1, q2), q3);
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int ship_turbine_turn_port_setup_f64(double m, double k, double p, double v, double R, double a,
     double b, double g, ship_turbine_turn_port_constants_f64 *constants)
 {

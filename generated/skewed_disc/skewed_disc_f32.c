@@ -152,6 +152,9 @@ static skewed_disc_pair_f32 skewed_disc_cos_f32(skewed_disc_pair_f32 a)
     return skewed_disc_sine_f32(a, 1.0F);
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int skewed_disc_setup_f32(float m, float r, float skew, float b,
     skewed_disc_constants_f32 *constants)
 {

@@ -20,7 +20,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 e91cdd287ef07949.
+ * Body of these files: sha256 2433a6dc24d4bf54.
  */
 #ifndef SKEWED_DISC_F32_H
 #define SKEWED_DISC_F32_H
@@ -46,9 +46,6 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 7 operations on pairs.
- * On Cortex-M0+, -O2: 96326 to 97840 instructions, 1544 B of code, 128 B of tables, 520 B of
- *            stack.
- * On Cortex-M4F, -O2: 2386 instructions, 1280 B of code, 128 B of tables, 404 B of stack.
  */
 int skewed_disc_setup_f32(float m, float r, float skew, float b,
     skewed_disc_constants_f32 *constants);
@@ -70,8 +67,6 @@ int skewed_disc_setup_f32(float m, float r, float skew, float b,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: M_x 0 N m (seen 0), M_y 0.00061
  *            N m (seen 0.0006), M_z 0 N m (seen 0).
  * Cost: 2 mul.
- * On Cortex-M0+, -O2: 248 to 255 instructions, 36 B of code, 48 B of stack.
- * On Cortex-M4F, -O2: 8 instructions, 24 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -92,8 +87,6 @@ void skewed_disc_M_f32(const skewed_disc_constants_f32 *constants, float w, floa
  * Bound: proved, absolute, by rounding alone, on the whole ranges: bearing_force 0.0017 N (seen
  *            0.0016).
  * Cost: 2 mul.
- * On Cortex-M0+, -O2: 244 to 251 instructions, 24 B of code, 48 B of stack.
- * On Cortex-M4F, -O2: 5 instructions, 20 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

@@ -164,6 +164,9 @@ static skewed_disc_pair_f64 skewed_disc_cos_f64(skewed_disc_pair_f64 a)
     return skewed_disc_sine_f64(a, 1.0);
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int skewed_disc_setup_f64(double m, double r, double skew, double b,
     skewed_disc_constants_f64 *constants)
 {

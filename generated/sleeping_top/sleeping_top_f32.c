@@ -95,6 +95,9 @@ static sleeping_top_pair_f32 sleeping_top_div_f32(sleeping_top_pair_f32 a, sleep
     return sleeping_top_add_f32(sleeping_top_add_f32(q1, q2), q3);
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int sleeping_top_setup_f32(float m, float r, float l, float n, float g,
     sleeping_top_constants_f32 *constants)
 {

@@ -95,6 +95,9 @@ static sleeping_top_pair_f64 sleeping_top_div_f64(sleeping_top_pair_f64 a, sleep
     return sleeping_top_add_f64(sleeping_top_add_f64(q1, q2), q3);
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int sleeping_top_setup_f64(double m, double r, double l, double n, double g,
     sleeping_top_constants_f64 *constants)
 {

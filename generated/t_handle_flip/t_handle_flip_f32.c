@@ -122,6 +122,9 @@ static _Bool t_handle_flip_less_f32(const t_handle_flip_pair_f32 a, const t_hand
     return (a.high < b.high) || ((a.high <= b.high) && (a.low < b.low));
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int t_handle_flip_setup_f32(float I_xx, float I_yy, float I_zz,
     t_handle_flip_constants_f32 *constants)
 {

@@ -122,6 +122,9 @@ static _Bool t_handle_flip_less_f64(const t_handle_flip_pair_f64 a, const t_hand
     return (a.high < b.high) || ((a.high <= b.high) && (a.low < b.low));
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int t_handle_flip_setup_f64(double I_xx, double I_yy, double I_zz,
     t_handle_flip_constants_f64 *constants)
 {

@@ -20,7 +20,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 1e00013af0d3f0d7.
+ * Body of these files: sha256 fc313aa4376bd460.
  */
 #ifndef T_HANDLE_FLIP_F64_H
 #define T_HANDLE_FLIP_F64_H
@@ -74,7 +74,6 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 26 operations on pairs.
- * On Cortex-M0+, -O2: 301317 to 307965 instructions, 4980 B of code, 1472 B of stack.
  */
 int t_handle_flip_setup_f64(double I_xx, double I_yy, double I_zz,
     t_handle_flip_constants_f64 *constants);
@@ -91,7 +90,6 @@ int t_handle_flip_setup_f64(double I_xx, double I_yy, double I_zz,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 4.3e-14 J (seen
  *            3.3e-14).
  * Cost: 2 add, 6 mul.
- * On Cortex-M0+, -O2: 2015 to 2076 instructions, 140 B of code, 104 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void t_handle_flip_kinetic_energy_f64(const t_handle_flip_constants_f64 *constants,
@@ -111,7 +109,6 @@ void t_handle_flip_kinetic_energy_f64(const t_handle_flip_constants_f64 *constan
  * Bound: proved, absolute, by rounding alone, on the whole ranges: angular_momentum 4.5e-16 kg
  *            m^2/s (seen 4.4e-16).
  * Cost: 3 mul.
- * On Cortex-M0+, -O2: 903 to 931 instructions, 88 B of code, 96 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void t_handle_flip_angular_momentum_f64(const t_handle_flip_constants_f64 *constants,
@@ -131,7 +128,6 @@ void t_handle_flip_angular_momentum_f64(const t_handle_flip_constants_f64 *const
  * Bound: not proved: a divisor may vanish for all that ranges tell, in set-up.
  * Cost: 170 add, 50 sub, 387 mul, 121 div, 1 neg, 29 sqrt, 2 sin, 2 cos, 14 abs, 2 at_most, 1
  *            both, 13 less, 2 power_of_two, 35 select.
- * On Cortex-M0+, -O2: 238828 to 264756 instructions, 12820 B of code, 880 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.

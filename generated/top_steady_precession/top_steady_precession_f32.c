@@ -146,6 +146,9 @@ static top_steady_precession_pair_f32 top_steady_precession_cos_f32(top_steady_p
     return top_steady_precession_sine_f32(a, 1.0F);
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int top_steady_precession_setup_f32(float r, float l, float theta, float n, float g,
     top_steady_precession_constants_f32 *constants)
 {

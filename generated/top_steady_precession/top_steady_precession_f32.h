@@ -22,7 +22,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 e16ace9673ba7348.
+ * Body of these files: sha256 dcb670b5e4b9957e.
  */
 #ifndef TOP_STEADY_PRECESSION_F32_H
 #define TOP_STEADY_PRECESSION_F32_H
@@ -54,9 +54,6 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 11 operations on pairs.
- * On Cortex-M0+, -O2: 96728 to 100428 instructions, 1468 B of code, 128 B of tables, 488 B of
- *            stack.
- * On Cortex-M4F, -O2: 2389 to 2406 instructions, 1264 B of code, 128 B of tables, 388 B of stack.
  */
 int top_steady_precession_setup_f32(float r, float l, float theta, float n, float g,
     top_steady_precession_constants_f32 *constants);
@@ -71,10 +68,8 @@ int top_steady_precession_setup_f32(float r, float l, float theta, float n, floa
  * Error: median 0.53, largest 4.1 u of the largest product or sum in the equation (of steady;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8324 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: steady 2.6e-05 (seen 2.2e-05).
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: steady 2.5e-05 (seen 2.2e-05).
  * Cost: 2 sub, 2 mul.
- * On Cortex-M0+, -O2: 376 to 443 instructions, 40 B of code, 48 B of stack.
- * On Cortex-M4F, -O2: 9 instructions, 36 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

@@ -158,6 +158,9 @@ static top_steady_precession_pair_f64 top_steady_precession_cos_f64(top_steady_p
     return top_steady_precession_sine_f64(a, 1.0);
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int top_steady_precession_setup_f64(double r, double l, double theta, double n, double g,
     top_steady_precession_constants_f64 *constants)
 {

@@ -21,7 +21,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 a330c4d4b56fd769.
+ * Body of these files: sha256 6049b9712dbabf76.
  */
 #ifndef TOP_STEADY_PRECESSION_F64_H
 #define TOP_STEADY_PRECESSION_F64_H
@@ -57,8 +57,6 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 11 operations on pairs.
- * On Cortex-M0+, -O2: 288901 to 307561 instructions, 2404 B of code, 448 B of tables, 888 B of
- *            stack.
  */
 int top_steady_precession_setup_f64(double r, double l, double theta, double n, double g,
     top_steady_precession_constants_f64 *constants);
@@ -73,9 +71,8 @@ int top_steady_precession_setup_f64(double r, double l, double theta, double n, 
  * Error: median 0.52, largest 3.7 u of the largest product or sum in the equation (of steady;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8324 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: steady 4.8e-14 (seen 4.1e-14).
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: steady 4.6e-14 (seen 4.1e-14).
  * Cost: 2 sub, 2 mul.
- * On Cortex-M0+, -O2: 876 to 964 instructions, 56 B of code, 80 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

@@ -18,7 +18,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 dcf158157d7d27e1.
+ * Body of these files: sha256 b569ff03569204c3.
  */
 #ifndef TORQUE_FREE_AXISYMMETRIC_F32_H
 #define TORQUE_FREE_AXISYMMETRIC_F32_H
@@ -57,8 +57,6 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 4 operations on pairs.
- * On Cortex-M0+, -O2: 15052 to 15523 instructions, 972 B of code, 304 B of stack.
- * On Cortex-M4F, -O2: 322 instructions, 600 B of code, 192 B of stack.
  */
 int torque_free_axisymmetric_setup_f32(float A, float C,
     torque_free_axisymmetric_constants_f32 *constants);
@@ -75,11 +73,9 @@ int torque_free_axisymmetric_setup_f32(float A, float C,
  *            200000 samples of the ranges, 65536 searched from the worst); at 8336 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: precession 6.4e-06 rad/s (seen
- *            4.8e-06).
+ *            4.7e-06).
  * Singular: at w_x = w_y = 0, precession infinite, no number or beyond all measure.
  * Cost: 3 add, 7 mul, 1 div, 3 sqrt.
- * On Cortex-M0+, -O2: 2384 to 2452 instructions, 136 B of code, 64 B of stack.
- * On Cortex-M4F, -O2: 32 instructions, 188 B of code, 32 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void torque_free_axisymmetric_precession_f32(const torque_free_axisymmetric_constants_f32 *constants,
@@ -94,11 +90,9 @@ void torque_free_axisymmetric_precession_f32(const torque_free_axisymmetric_cons
  * Error: median 0.14, largest 0.73 u of the largest product or sum in the equation (of body_rate;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8336 hard samples
  *            1.3 u (of body_rate, thin rod).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: body_rate 6.6e-07 rad/s (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: body_rate 4.5e-07 rad/s (seen
  *            4.5e-07).
  * Cost: 1 mul.
- * On Cortex-M0+, -O2: 123 to 126 instructions, 16 B of code, 40 B of stack.
- * On Cortex-M4F, -O2: 4 instructions, 16 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -116,12 +110,10 @@ void torque_free_axisymmetric_body_rate_f32(const torque_free_axisymmetric_const
  * Error: median 0.61, largest 4.2 u of the largest product or sum in the equation (of tan_theta;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8336 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: tan_theta 1.1e-07 (seen
- *            7.9e-08).
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: tan_theta 9.3e-08 (seen
+ *            7.6e-08).
  * Singular: at w_z = 0, tan_theta infinite, no number or beyond all measure.
  * Cost: 1 add, 5 mul, 1 div, 1 sqrt.
- * On Cortex-M0+, -O2: 1369 to 1426 instructions, 96 B of code, 64 B of stack.
- * On Cortex-M4F, -O2: 15 instructions, 104 B of code, 24 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void torque_free_axisymmetric_tan_theta_f32(const torque_free_axisymmetric_constants_f32 *constants,
@@ -136,12 +128,9 @@ void torque_free_axisymmetric_tan_theta_f32(const torque_free_axisymmetric_const
  * Error: median 0.48, largest 2.8 u of the largest component, by rounding alone (of tan_beta;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8336 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: tan_beta 6.7e-08 (seen
- *            5.1e-08).
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: tan_beta 6e-08 (seen 5.6e-08).
  * Singular: at w_z = 0, tan_beta infinite, no number or beyond all measure.
  * Cost: 1 add, 2 mul, 1 div, 1 sqrt.
- * On Cortex-M0+, -O2: 999 to 1045 instructions, 48 B of code, 64 B of stack.
- * On Cortex-M4F, -O2: 10 instructions, 72 B of code, 16 B of stack.
  */
 void torque_free_axisymmetric_tan_beta_f32(float w_x, float w_y, float w_z, float *tan_beta);
 
@@ -155,11 +144,9 @@ void torque_free_axisymmetric_tan_beta_f32(float w_x, float w_y, float w_z, floa
  * In this scene: L = sqrt(A^2*(w_x^2 + w_y^2) + C^2*w_z^2)
  * Error: median 0.45, largest 2.9 u of the largest product or sum in the equation (of L; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8336 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: L 1.7e-06 kg m^2/s (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: L 1.6e-06 kg m^2/s (seen
  *            1.4e-06).
  * Cost: 2 add, 6 mul, 1 sqrt.
- * On Cortex-M0+, -O2: 1190 to 1234 instructions, 104 B of code, 64 B of stack.
- * On Cortex-M4F, -O2: 16 instructions, 84 B of code, 16 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void torque_free_axisymmetric_L_f32(const torque_free_axisymmetric_constants_f32 *constants,

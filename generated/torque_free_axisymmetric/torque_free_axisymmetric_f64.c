@@ -112,6 +112,9 @@ static torque_free_axisymmetric_pair_f64 torque_free_axisymmetric_div_f64(torque
     return torque_free_axisymmetric_add_f64(torque_free_axisymmetric_add_f64(q1, q2), q3);
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int torque_free_axisymmetric_setup_f64(double A, double C,
     torque_free_axisymmetric_constants_f64 *constants)
 {

@@ -127,6 +127,9 @@ static _Bool tumbling_body_at_most_f32(const tumbling_body_pair_f32 a, const tum
     return (a.high < b.high) || ((a.high <= b.high) && (a.low <= b.low));
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int tumbling_body_setup_f32(float I_xx, float I_yy, float I_zz,
     tumbling_body_constants_f32 *constants)
 {

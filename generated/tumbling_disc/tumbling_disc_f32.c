@@ -102,6 +102,9 @@ DERIVE_APART static tumbling_disc_pair_f32 tumbling_disc_div_f32(tumbling_disc_p
     return tumbling_disc_add_f32(tumbling_disc_add_f32(q1, q2), q3);
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int tumbling_disc_setup_f32(float A, float C, tumbling_disc_constants_f32 *constants)
 {
     const tumbling_disc_pair_f32 s0 = tumbling_disc_sub_f32((tumbling_disc_pair_f32){A, 0.0F},

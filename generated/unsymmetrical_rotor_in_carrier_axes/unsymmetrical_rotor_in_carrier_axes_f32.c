@@ -97,6 +97,9 @@ DERIVE_APART static unsymmetrical_rotor_in_carrier_axes_pair_f32 unsymmetrical_r
     return (unsymmetrical_rotor_in_carrier_axes_pair_f32){high, e - (high - p.high)};
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int unsymmetrical_rotor_in_carrier_axes_setup_f32(float I_xx, float I_yy, float I_zz,
     unsymmetrical_rotor_in_carrier_axes_constants_f32 *constants)
 {

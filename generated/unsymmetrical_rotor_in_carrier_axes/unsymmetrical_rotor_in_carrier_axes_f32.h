@@ -20,7 +20,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 183433ff01e6625c.
+ * Body of these files: sha256 6410ac4fb86fd508.
  */
 #ifndef UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F32_H
 #define UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F32_H
@@ -55,8 +55,6 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 6 operations on pairs.
- * On Cortex-M0+, -O2: 10316 to 10573 instructions, 952 B of code, 264 B of stack.
- * On Cortex-M4F, -O2: 263 instructions, 612 B of code, 144 B of stack.
  */
 int unsymmetrical_rotor_in_carrier_axes_setup_f32(float I_xx, float I_yy, float I_zz,
     unsymmetrical_rotor_in_carrier_axes_constants_f32 *constants);
@@ -82,8 +80,6 @@ int unsymmetrical_rotor_in_carrier_axes_setup_f32(float I_xx, float I_yy, float 
  * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 0.00035 N m (seen
  *            0.00029); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 3 add, 2 sub, 14 mul, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 5645 to 6405 instructions, 780 B of code, 136 B of stack.
- * On Cortex-M4F, -O2: 126 to 127 instructions, 568 B of code, 52 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -109,8 +105,6 @@ void unsymmetrical_rotor_in_carrier_axes_moment_f32(const unsymmetrical_rotor_in
  *            0.00027), jacobian 0.00042 (seen 0.0003); assumed: sines and cosines of our own
  *            within 0.79 ulp.
  * Cost: 6 add, 7 sub, 27 mul, 1 neg, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 7746 to 8605 instructions, 984 B of code, 136 B of stack.
- * On Cortex-M4F, -O2: 166 to 167 instructions, 724 B of code, 52 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -120,10 +114,7 @@ void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_f32(
     float gamma, float gamma_dot, float gamma_ddot, float W, float W_dot, float moment[3],
     float jacobian[11]);
 
-/* The same, the whole matrix: 15 entries.
- * On Cortex-M0+, -O2: 7770 to 8591 instructions, 996 B of code, 136 B of stack.
- * On Cortex-M4F, -O2: 171 to 172 instructions, 732 B of code, 52 B of stack.
- */
+/* The same, the whole matrix: 15 entries. */
 void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_dense_f32(
     const unsymmetrical_rotor_in_carrier_axes_constants_f32 *constants,
     float gamma, float gamma_dot, float gamma_ddot, float W, float W_dot, float moment[3],
@@ -146,8 +137,6 @@ void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_dense_f32(
  * Bound: proved, absolute, by rounding alone, on the whole ranges: angular_momentum 3.1e-05 kg
  *            m^2/s (seen 3.1e-05); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 1 sub, 6 mul, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 4352 to 5136 instructions, 648 B of code, 112 B of stack.
- * On Cortex-M4F, -O2: 110 to 111 instructions, 504 B of code, 44 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rigid.
  */
@@ -185,8 +174,6 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_f32(
  *            0.00023), rate_absolute 0.00038 N m (seen 0.00029); assumed: sines and cosines of our
  *            own within 0.79 ulp.
  * Cost: 3 add, 3 sub, 16 mul, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 5932 to 6728 instructions, 824 B of code, 144 B of stack.
- * On Cortex-M4F, -O2: 133 to 134 instructions, 596 B of code, 52 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rate_seen_from_N, rigid.
  */
@@ -210,8 +197,6 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_rate_f32(
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 0.019 J (seen
  *            0.015); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 1 add, 1 sub, 7 mul, 1 cos.
- * On Cortex-M0+, -O2: 4523 to 5277 instructions, 648 B of code, 112 B of stack.
- * On Cortex-M4F, -O2: 109 to 110 instructions, 500 B of code, 44 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rigid.
  */

@@ -19,7 +19,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 1428bd3718a57453.
+ * Body of these files: sha256 c06cc458eb52d60c.
  */
 #ifndef UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F64_H
 #define UNSYMMETRICAL_ROTOR_IN_CARRIER_AXES_F64_H
@@ -58,7 +58,6 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 6 operations on pairs.
- * On Cortex-M0+, -O2: 20250 to 22247 instructions, 1516 B of code, 496 B of stack.
  */
 int unsymmetrical_rotor_in_carrier_axes_setup_f64(double I_xx, double I_yy, double I_zz,
     unsymmetrical_rotor_in_carrier_axes_constants_f64 *constants);
@@ -81,10 +80,9 @@ int unsymmetrical_rotor_in_carrier_axes_setup_f64(double I_xx, double I_yy, doub
  * Error: median 0.54, largest 15 u of the largest product or sum in the equation (of moment;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples
  *            7.4e+05 u (of moment, thin rod).
- * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 6.4e-13 N m (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 6.5e-13 N m (seen
  *            5.2e-13); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 3 add, 2 sub, 14 mul, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 14433 to 16160 instructions, 1256 B of code, 216 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -110,7 +108,6 @@ void unsymmetrical_rotor_in_carrier_axes_moment_f64(const unsymmetrical_rotor_in
  *            5.1e-13), jacobian 7.7e-13 (seen 5.3e-13); assumed: sines and cosines of our own
  *            within 0.79 ulp.
  * Cost: 6 add, 7 sub, 27 mul, 1 neg, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 19539 to 21352 instructions, 1632 B of code, 224 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -120,9 +117,7 @@ void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_f64(
     double gamma, double gamma_dot, double gamma_ddot, double W, double W_dot, double moment[3],
     double jacobian[11]);
 
-/* The same, the whole matrix: 15 entries.
- * On Cortex-M0+, -O2: 19542 to 21255 instructions, 1656 B of code, 224 B of stack.
- */
+/* The same, the whole matrix: 15 entries. */
 void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_dense_f64(
     const unsymmetrical_rotor_in_carrier_axes_constants_f64 *constants,
     double gamma, double gamma_dot, double gamma_ddot, double W, double W_dot, double moment[3],
@@ -145,7 +140,6 @@ void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_dense_f64(
  * Bound: proved, absolute, by rounding alone, on the whole ranges: angular_momentum 5.7e-14 kg
  *            m^2/s (seen 5.7e-14); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 1 sub, 6 mul, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 11493 to 13198 instructions, 1068 B of code, 192 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rigid.
  */
@@ -180,10 +174,9 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_f64(
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples
  *            1.2e+06 u (of rate_in_axes, thin rod).
  * Bound: proved, absolute, by rounding alone, on the whole ranges: rate_in_axes 6.4e-13 N m (seen
- *            4.1e-13), rate_absolute 7e-13 N m (seen 5.2e-13); assumed: sines and cosines of our
+ *            4.1e-13), rate_absolute 7.1e-13 N m (seen 5.2e-13); assumed: sines and cosines of our
  *            own within 0.79 ulp.
  * Cost: 3 add, 3 sub, 16 mul, 1 sin, 1 cos.
- * On Cortex-M0+, -O2: 15201 to 16919 instructions, 1316 B of code, 240 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rate_seen_from_N, rigid.
  */
@@ -207,7 +200,6 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_rate_f64(
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 3.4e-11 J (seen
  *            2.9e-11); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 1 add, 1 sub, 7 mul, 1 cos.
- * On Cortex-M0+, -O2: 11936 to 13594 instructions, 1060 B of code, 184 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rigid.
  */

@@ -97,6 +97,9 @@ static wheel_pendulum_pair_f32 wheel_pendulum_div_f32(wheel_pendulum_pair_f32 a,
     return wheel_pendulum_add_f32(wheel_pendulum_add_f32(q1, q2), q3);
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int wheel_pendulum_setup_f32(float m_p, float m_r, float l_p, float l_r, float J_p, float J_r,
     float g, wheel_pendulum_constants_f32 *constants)
 {

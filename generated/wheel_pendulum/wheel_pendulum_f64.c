@@ -97,6 +97,9 @@ static wheel_pendulum_pair_f64 wheel_pendulum_div_f64(wheel_pendulum_pair_f64 a,
     return wheel_pendulum_add_f64(wheel_pendulum_add_f64(q1, q2), q3);
 }
 
+#if defined(__GNUC__) /* set-up runs once: it is kept short at every level of optimisation */
+__attribute__((cold))
+#endif
 int wheel_pendulum_setup_f64(double m_p, double m_r, double l_p, double l_r, double J_p, double J_r,
     double g, wheel_pendulum_constants_f64 *constants)
 {
