@@ -154,6 +154,15 @@ void rattleback_state_rate_f64(const rattleback_constants_f64 *constants, double
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_dot = omega x rho_i   [lecture step velocity_of_particle]
  * Postcondition: l_N_dot = l_dot + Omega x l   [lecture step transport_theorem]
+ * In this scene: mass_matrix[0] = A + m*(h - c)^2
+ * In this scene: mass_matrix[1] = -D
+ * In this scene: mass_matrix[3] = -D
+ * In this scene: mass_matrix[4] = B + m*(c - h)^2
+ * In this scene: mass_matrix[8] = C
+ * In this scene: damping_matrix[1] = (A + B - C + m*(2*c - 2*h - b^2/c)*(c - h))*n
+ * In this scene: damping_matrix[3] = (C - A - B + m*(2*c - 2*h - a^2/c)*(h - c))*n
+ * In this scene: stiffness_matrix[0] = (C - B)*n^2 + m*((b^2*g)/c + (g - (h - c + b^2/c)*n^2)*(h -
+ *            c))
  * Error: median 0, largest 1 u of the largest product or sum in the equation (of stiffness_matrix;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8336 hard samples no
  *            more.

@@ -181,6 +181,12 @@ void rolling_disc_state_rate_jacobian_dense_f64(const rolling_disc_constants_f64
  * Postcondition: Omega_1 = R_2^T Omega + Omega_2   [lecture step angular_velocities_add]
  * Postcondition: rho_i_N_dot = omega x rho_i   [lecture step velocity_of_particle]
  * Postcondition: l_N_dot = l_dot + Omega x l   [lecture step transport_theorem]
+ * In this scene: mass_matrix[0] = 5/4*m*r^2
+ * In this scene: mass_matrix[4] = 1/4*m*r^2
+ * In this scene: mass_matrix[8] = 3/2*m*r^2
+ * In this scene: damping_matrix[1] = 1/2*m*r^2*n
+ * In this scene: damping_matrix[3] = -3/2*m*r^2*n
+ * In this scene: stiffness_matrix[0] = -m*r*g
  * Error: median 0, largest 1 u of the largest product or sum in the equation (of mass_matrix;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8318 hard samples no
  *            more.
