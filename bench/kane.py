@@ -51,6 +51,8 @@ class KaneEquations:
     def whole(self) -> tuple[Matrix, Matrix]:
         """Return the matrix and the right side of unknowns and multipliers together."""
         held = self.slopes.rows
+        if not held:
+            return self.mass, self.right
         matrix = Matrix([[self.mass, self.slopes.T], [self.slopes, zeros(held, held)]])
         return matrix, Matrix([*self.right, *(-self.rests)])
 

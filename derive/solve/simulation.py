@@ -66,7 +66,7 @@ def simulated(
     count = _count(until, step)
     step = until / count if count else step
     scene = found.library.scene
-    if by == STEP and STEP not in scene.wanted:
+    if isinstance(by, str) and by == STEP and STEP not in scene.wanted:
         raise SceneError(advice_on(scene, STEP, "a simulation"))
     name = one_of(by, f"{label}: by", steps_by_state(found.library))
     states = found.library.vocabulary.states

@@ -79,6 +79,7 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 31 operations on pairs.
+ * On Cortex-M0+, -O2: 120598 to 127249 instructions, 3298 B of code, 1264 B of stack.
  */
 int acrobot_setup_f64(double m_1, double m_2, double l_1, double c_1, double c_2, double I_1,
     double I_2, double g, acrobot_constants_f64 *constants);
@@ -117,6 +118,7 @@ int acrobot_setup_f64(double m_1, double m_2, double l_1, double c_1, double c_2
  *            more.
  * Bound: not proved: a divisor may vanish for all that ranges tell.
  * Cost: 4 add, 6 sub, 16 mul, 1 div, 2 sin, 2 cos.
+ * On Cortex-M0+, -O2: 26129 to 29483 instructions, 1392 B of code, 240 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -151,6 +153,7 @@ void acrobot_state_rate_f64(const acrobot_constants_f64 *constants, double q_1, 
  *            more.
  * Bound: not proved: a divisor may vanish for all that ranges tell.
  * Cost: 9 add, 20 sub, 43 mul, 1 div, 1 neg, 2 sin, 2 cos.
+ * On Cortex-M0+, -O2: 36769 to 40298 instructions, 2112 B of code, 320 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -159,7 +162,9 @@ void acrobot_state_rate_jacobian_f64(const acrobot_constants_f64 *constants, dou
     double q_1_dot, double q_2, double q_2_dot, double T, double *q_1_rate, double *q_1_dot_rate,
     double *q_2_rate, double *q_2_dot_rate, double jacobian[12]);
 
-/* The same, the whole matrix: 20 entries. */
+/* The same, the whole matrix: 20 entries.
+ * On Cortex-M0+, -O2: 36927 to 40345 instructions, 2172 B of code, 320 B of stack.
+ */
 void acrobot_state_rate_jacobian_dense_f64(const acrobot_constants_f64 *constants, double q_1,
     double q_1_dot, double q_2, double q_2_dot, double T, double *q_1_rate, double *q_1_dot_rate,
     double *q_2_rate, double *q_2_dot_rate, double jacobian[20]);
@@ -193,6 +198,7 @@ void acrobot_state_rate_jacobian_dense_f64(const acrobot_constants_f64 *constant
  * Bound: proved, absolute, by rounding alone, on the whole ranges: mass_matrix 1.8e-15 (seen
  *            1.8e-15), damping_matrix 0 (seen 0), stiffness_matrix 7.2e-15 (seen 7.1e-15).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 42 to 43 instructions, 84 B of code, 20 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -226,6 +232,7 @@ void acrobot_linearised_f64(const acrobot_constants_f64 *constants, double mass_
  * Bound: proved, absolute, by rounding alone, on the whole ranges: energy 7.4e-13 J (seen 5e-13);
  *            assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 6 add, 1 sub, 10 mul, 2 sin, 2 cos.
+ * On Cortex-M0+, -O2: 22977 to 26410 instructions, 1188 B of code, 216 B of stack.
  * Rests on: A_is_G, A_is_fixed, axes_are_orthonormal, body_triad, body_triad_is_orthonormal,
  *            composed_turns, constant_mass, further_axes_are_right_handed, rate_seen_from_N,
  *            rigid.
@@ -259,6 +266,7 @@ void acrobot_energy_f64(const acrobot_constants_f64 *constants, double q_1, doub
  *            samples of the ranges, 65536 searched from the worst); at 48 hard samples no more.
  * Bound: not proved: a divisor may vanish for all that ranges tell.
  * Cost: 44 add, 24 sub, 99 mul, 8 div, 8 sin, 8 cos.
+ * On Cortex-M0+, -O2: 119480 to 132816 instructions, 3492 B of code, 512 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

@@ -82,6 +82,8 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 23 operations on pairs.
+ * On Cortex-M0+, -O2: 52111 to 54187 instructions, 1794 B of code, 592 B of stack.
+ * On Cortex-M4F, -O2: 1011 instructions, 1422 B of code, 448 B of stack.
  */
 int cart_pendulum_setup_f32(float M, float m, float l, float I, float b, float g,
     cart_pendulum_constants_f32 *constants);
@@ -113,6 +115,8 @@ int cart_pendulum_setup_f32(float M, float m, float l, float I, float b, float g
  *            8.1e-05 rad/s^2 (seen 5.6e-05); assumed: sines and cosines of our own within 0.79
  *            ulp.
  * Cost: 1 add, 4 sub, 11 mul, 1 div, 1 sin, 1 cos.
+ * On Cortex-M0+, -O2: 5627 to 6415 instructions, 760 B of code, 128 B of stack.
+ * On Cortex-M4F, -O2: 130 to 131 instructions, 580 B of code, 60 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, rigid, strong_third_law, third_law.
  */
@@ -144,6 +148,8 @@ void cart_pendulum_state_rate_f32(const cart_pendulum_constants_f32 *constants, 
  *            8.7e-05 rad/s^2 (seen 6e-05), jacobian 0.00013 (seen 6e-05); assumed: sines and
  *            cosines of our own within 0.79 ulp.
  * Cost: 7 add, 2 sub, 27 mul, 1 div, 1 sin, 1 cos.
+ * On Cortex-M0+, -O2: 7916 to 8786 instructions, 984 B of code, 160 B of stack.
+ * On Cortex-M4F, -O2: 163 to 164 instructions, 712 B of code, 60 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, rigid, strong_third_law, third_law.
  */
@@ -151,7 +157,10 @@ void cart_pendulum_state_rate_jacobian_f32(const cart_pendulum_constants_f32 *co
     float x_dot, float theta, float theta_dot, float F, float *x_rate, float *x_dot_rate,
     float *theta_rate, float *theta_dot_rate, float jacobian[10]);
 
-/* The same, the whole matrix: 20 entries. */
+/* The same, the whole matrix: 20 entries.
+ * On Cortex-M0+, -O2: 7910 to 8731 instructions, 1004 B of code, 160 B of stack.
+ * On Cortex-M4F, -O2: 174 to 175 instructions, 736 B of code, 60 B of stack.
+ */
 void cart_pendulum_state_rate_jacobian_dense_f32(const cart_pendulum_constants_f32 *constants,
     float x_dot, float theta, float theta_dot, float F, float *x_rate, float *x_dot_rate,
     float *theta_rate, float *theta_dot_rate, float jacobian[20]);
@@ -179,6 +188,8 @@ void cart_pendulum_state_rate_jacobian_dense_f32(const cart_pendulum_constants_f
  * Bound: proved, absolute, by rounding alone, on the whole ranges: mass_matrix 6e-08 (seen 6e-08),
  *            damping_matrix 0 (seen 0), stiffness_matrix 6e-08 (seen 6e-08).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 20 to 21 instructions, 40 B of code, 12 B of stack.
+ * On Cortex-M4F, -O2: 19 instructions, 56 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, rigid, strong_third_law, third_law.
  */
@@ -206,6 +217,8 @@ void cart_pendulum_linearised_f32(const cart_pendulum_constants_f32 *constants,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: energy 2.7e-06 J (seen
  *            2.3e-06); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 3 add, 7 mul, 1 cos.
+ * On Cortex-M0+, -O2: 4513 to 5409 instructions, 668 B of code, 112 B of stack.
+ * On Cortex-M4F, -O2: 114 to 115 instructions, 520 B of code, 44 B of stack.
  * Rests on: A_is_G, axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass,
  *            rate_seen_from_N, rigid.
  */
@@ -235,6 +248,8 @@ void cart_pendulum_energy_f32(const cart_pendulum_constants_f32 *constants, floa
  * Bound: proved, absolute, by rounding alone, on the whole ranges: rail 1.6e-05 N (seen 9.4e-06);
  *            assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 5 add, 3 sub, 18 mul, 1 div, 1 neg, 1 sin, 1 cos.
+ * On Cortex-M0+, -O2: 6694 to 7531 instructions, 836 B of code, 120 B of stack.
+ * On Cortex-M4F, -O2: 139 to 140 instructions, 620 B of code, 52 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, rigid, strong_third_law, third_law.
  */
@@ -266,6 +281,8 @@ void cart_pendulum_rail_f32(const cart_pendulum_constants_f32 *constants, float 
  *            1.5e-07), theta_dot_next 3.2e-06 rad/s (seen 1.2e-06); assumed: sines and cosines of
  *            our own within 0.79 ulp.
  * Cost: 29 add, 16 sub, 78 mul, 4 div, 4 sin, 4 cos.
+ * On Cortex-M0+, -O2: 27845 to 30959 instructions, 1756 B of code, 224 B of stack.
+ * On Cortex-M4F, -O2: 533 to 537 instructions, 1152 B of code, 164 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, rigid, strong_third_law, third_law.
  */

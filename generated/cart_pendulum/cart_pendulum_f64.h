@@ -84,6 +84,7 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 23 operations on pairs.
+ * On Cortex-M0+, -O2: 108818 to 115943 instructions, 2956 B of code, 1088 B of stack.
  */
 int cart_pendulum_setup_f64(double M, double m, double l, double I, double b, double g,
     cart_pendulum_constants_f64 *constants);
@@ -115,6 +116,7 @@ int cart_pendulum_setup_f64(double M, double m, double l, double I, double b, do
  *            1.7e-13 rad/s^2 (seen 9.1e-14); assumed: sines and cosines of our own within 0.79
  *            ulp.
  * Cost: 1 add, 4 sub, 11 mul, 1 div, 1 sin, 1 cos.
+ * On Cortex-M0+, -O2: 14226 to 16006 instructions, 1216 B of code, 216 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, rigid, strong_third_law, third_law.
  */
@@ -146,6 +148,7 @@ void cart_pendulum_state_rate_f64(const cart_pendulum_constants_f64 *constants, 
  *            1.8e-13 rad/s^2 (seen 1.1e-13), jacobian 2.5e-13 (seen 1.3e-13); assumed: sines and
  *            cosines of our own within 0.79 ulp.
  * Cost: 7 add, 2 sub, 27 mul, 1 div, 1 sin, 1 cos.
+ * On Cortex-M0+, -O2: 19506 to 21429 instructions, 1624 B of code, 272 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, rigid, strong_third_law, third_law.
  */
@@ -153,7 +156,9 @@ void cart_pendulum_state_rate_jacobian_f64(const cart_pendulum_constants_f64 *co
     double x_dot, double theta, double theta_dot, double F, double *x_rate, double *x_dot_rate,
     double *theta_rate, double *theta_dot_rate, double jacobian[10]);
 
-/* The same, the whole matrix: 20 entries. */
+/* The same, the whole matrix: 20 entries.
+ * On Cortex-M0+, -O2: 19542 to 21426 instructions, 1692 B of code, 272 B of stack.
+ */
 void cart_pendulum_state_rate_jacobian_dense_f64(const cart_pendulum_constants_f64 *constants,
     double x_dot, double theta, double theta_dot, double F, double *x_rate, double *x_dot_rate,
     double *theta_rate, double *theta_dot_rate, double jacobian[20]);
@@ -181,6 +186,7 @@ void cart_pendulum_state_rate_jacobian_dense_f64(const cart_pendulum_constants_f
  * Bound: proved, absolute, by rounding alone, on the whole ranges: mass_matrix 1.2e-16 (seen
  *            1.1e-16), damping_matrix 0 (seen 0), stiffness_matrix 1.2e-16 (seen 1.1e-16).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 37 to 38 instructions, 76 B of code, 20 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, rigid, strong_third_law, third_law.
  */
@@ -208,6 +214,7 @@ void cart_pendulum_linearised_f64(const cart_pendulum_constants_f64 *constants,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: energy 5.2e-15 J (seen
  *            4.3e-15); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 3 add, 7 mul, 1 cos.
+ * On Cortex-M0+, -O2: 12009 to 13771 instructions, 1084 B of code, 184 B of stack.
  * Rests on: A_is_G, axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass,
  *            rate_seen_from_N, rigid.
  */
@@ -237,6 +244,7 @@ void cart_pendulum_energy_f64(const cart_pendulum_constants_f64 *constants, doub
  * Bound: proved, absolute, by rounding alone, on the whole ranges: rail 3e-14 N (seen 1.9e-14);
  *            assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 5 add, 3 sub, 18 mul, 1 div, 1 neg, 1 sin, 1 cos.
+ * On Cortex-M0+, -O2: 16578 to 18459 instructions, 1368 B of code, 232 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, rigid, strong_third_law, third_law.
  */
@@ -268,6 +276,7 @@ void cart_pendulum_rail_f64(const cart_pendulum_constants_f64 *constants, double
  *            theta_dot_next 5.9e-15 rad/s (seen 2.8e-15); assumed: sines and cosines of our own
  *            within 0.79 ulp.
  * Cost: 29 add, 16 sub, 78 mul, 4 div, 4 sin, 4 cos.
+ * On Cortex-M0+, -O2: 68935 to 75887 instructions, 2740 B of code, 392 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, rigid, strong_third_law, third_law.
  */

@@ -68,6 +68,8 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 23 operations on pairs.
+ * On Cortex-M0+, -O2: 46490 to 48335 instructions, 1804 B of code, 680 B of stack.
+ * On Cortex-M4F, -O2: 982 instructions, 1370 B of code, 528 B of stack.
  */
 int centrifuge_gondola_setup_f32(float m, float I_xx, float I_yy, float I_zz, float I_xz, float e_x,
     float e_z, centrifuge_gondola_constants_f32 *constants);
@@ -95,6 +97,8 @@ int centrifuge_gondola_setup_f32(float m, float I_xx, float I_yy, float I_zz, fl
  * Bound: proved, absolute, by rounding alone, on the whole ranges: F 0.0054 N (seen 0.0034);
  *            assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 11 add, 16 sub, 48 mul, 3 sin, 3 cos.
+ * On Cortex-M0+, -O2: 18512 to 20697 instructions, 1352 B of code, 208 B of stack.
+ * On Cortex-M4F, -O2: 369 to 372 instructions, 844 B of code, 108 B of stack.
  * Rests on: axes_are_orthonormal, composed_turns, constant_mass, further_axes_are_right_handed,
  *            newton, rate_seen_from_N, third_law.
  */
@@ -124,6 +128,8 @@ void centrifuge_gondola_F_f32(const centrifuge_gondola_constants_f32 *constants,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: M 0.011 N m (seen 0.0027);
  *            assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 15 add, 18 sub, 56 mul, 3 sin, 3 cos.
+ * On Cortex-M0+, -O2: 19988 to 22112 instructions, 1484 B of code, 216 B of stack.
+ * On Cortex-M4F, -O2: 388 to 390 instructions, 920 B of code, 108 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N, rigid,
  *            strong_third_law, third_law.

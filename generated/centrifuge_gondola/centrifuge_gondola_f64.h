@@ -71,6 +71,7 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 23 operations on pairs.
+ * On Cortex-M0+, -O2: 92315 to 101466 instructions, 3088 B of code, 1256 B of stack.
  */
 int centrifuge_gondola_setup_f64(double m, double I_xx, double I_yy, double I_zz, double I_xz,
     double e_x, double e_z, centrifuge_gondola_constants_f64 *constants);
@@ -98,6 +99,7 @@ int centrifuge_gondola_setup_f64(double m, double I_xx, double I_yy, double I_zz
  * Bound: proved, absolute, by rounding alone, on the whole ranges: F 1.1e-11 N (seen 6.1e-12);
  *            assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 11 add, 16 sub, 48 mul, 3 sin, 3 cos.
+ * On Cortex-M0+, -O2: 46902 to 51962 instructions, 2136 B of code, 368 B of stack.
  * Rests on: axes_are_orthonormal, composed_turns, constant_mass, further_axes_are_right_handed,
  *            newton, rate_seen_from_N, third_law.
  */
@@ -128,6 +130,7 @@ void centrifuge_gondola_F_f64(const centrifuge_gondola_constants_f64 *constants,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: M 2.1e-11 N m (seen 5.7e-12);
  *            assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 15 add, 18 sub, 56 mul, 3 sin, 3 cos.
+ * On Cortex-M0+, -O2: 50213 to 55244 instructions, 2340 B of code, 392 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N, rigid,
  *            strong_third_law, third_law.

@@ -48,6 +48,8 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 5 operations on pairs.
+ * On Cortex-M0+, -O2: 24703 to 25952 instructions, 986 B of code, 328 B of stack.
+ * On Cortex-M4F, -O2: 513 instructions, 634 B of code, 132 B of stack.
  */
 int chandler_rigid_earth_setup_f32(float A, float C, float rate,
     chandler_rigid_earth_constants_f32 *constants);
@@ -64,6 +66,8 @@ int chandler_rigid_earth_setup_f32(float A, float C, float rate,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: period_days 3.1e-05 d (seen
  *            3.1e-05).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 2 to 3 instructions, 8 B of code, 0 B of stack.
+ * On Cortex-M4F, -O2: 3 instructions, 8 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */

@@ -54,6 +54,8 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 11 operations on pairs.
+ * On Cortex-M0+, -O2: 29611 to 30296 instructions, 1186 B of code, 368 B of stack.
+ * On Cortex-M4F, -O2: 562 instructions, 862 B of code, 280 B of stack.
  */
 int disc_two_bearings_setup_f32(float m, float r, float w, float W, float d, float g,
     disc_two_bearings_constants_f32 *constants);
@@ -70,6 +72,8 @@ int disc_two_bearings_setup_f32(float m, float r, float w, float W, float d, flo
  * Bound: proved, absolute, by rounding alone, on the whole ranges: couple 9.6e-07 N m (seen
  *            9.5e-07).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 2 to 3 instructions, 8 B of code, 0 B of stack.
+ * On Cortex-M4F, -O2: 3 instructions, 8 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -84,6 +88,8 @@ void disc_two_bearings_couple_f32(const disc_two_bearings_constants_f32 *constan
  *            samples of the ranges, 65536 searched from the worst); at 8312 hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: R_up 1.6e-05 N (seen 1.5e-05).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 3 instructions, 8 B of code, 0 B of stack.
+ * On Cortex-M4F, -O2: 3 instructions, 8 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -100,6 +106,8 @@ void disc_two_bearings_R_up_f32(const disc_two_bearings_constants_f32 *constants
  * Bound: proved, absolute, by rounding alone, on the whole ranges: R_down 1.6e-05 N (seen
  *            1.5e-05).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 3 instructions, 8 B of code, 0 B of stack.
+ * On Cortex-M4F, -O2: 3 instructions, 8 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */

@@ -57,6 +57,7 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 11 operations on pairs.
+ * On Cortex-M0+, -O2: 59556 to 63010 instructions, 1830 B of code, 680 B of stack.
  */
 int disc_two_bearings_setup_f64(double m, double r, double w, double W, double d, double g,
     disc_two_bearings_constants_f64 *constants);
@@ -73,6 +74,7 @@ int disc_two_bearings_setup_f64(double m, double r, double w, double W, double d
  * Bound: proved, absolute, by rounding alone, on the whole ranges: couple 1.8e-15 N m (seen
  *            1.8e-15).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 4 to 5 instructions, 12 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -87,6 +89,7 @@ void disc_two_bearings_couple_f64(const disc_two_bearings_constants_f64 *constan
  *            samples of the ranges, 65536 searched from the worst); at 8312 hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: R_up 2.9e-14 N (seen 2.8e-14).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 4 to 5 instructions, 12 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -103,6 +106,7 @@ void disc_two_bearings_R_up_f64(const disc_two_bearings_constants_f64 *constants
  * Bound: proved, absolute, by rounding alone, on the whole ranges: R_down 2.9e-14 N (seen
  *            2.8e-14).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 4 to 5 instructions, 12 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */

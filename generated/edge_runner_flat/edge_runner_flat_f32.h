@@ -60,6 +60,8 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 6 operations on pairs.
+ * On Cortex-M0+, -O2: 27645 to 28343 instructions, 1142 B of code, 392 B of stack.
+ * On Cortex-M4F, -O2: 573 instructions, 750 B of code, 180 B of stack.
  */
 int edge_runner_flat_setup_f32(float m, float r, float L, float g,
     edge_runner_flat_constants_f32 *constants);
@@ -74,6 +76,8 @@ int edge_runner_flat_setup_f32(float m, float r, float L, float g,
  *            samples of the ranges, 65536 searched from the worst); at 8329 hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: N 0.0034 N (seen 0.0033).
  * Cost: 1 add, 2 mul.
+ * On Cortex-M0+, -O2: 292 to 328 instructions, 28 B of code, 48 B of stack.
+ * On Cortex-M4F, -O2: 7 instructions, 28 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -92,6 +96,8 @@ void edge_runner_flat_N_f32(const edge_runner_flat_constants_f32 *constants, flo
  * Bound: proved, absolute, by rounding alone, on the whole ranges: gyro_gain 2.7e-07 (seen
  *            2.6e-07).
  * Cost: 1 add, 2 mul.
+ * On Cortex-M0+, -O2: 306 to 319 instructions, 32 B of code, 48 B of stack.
+ * On Cortex-M4F, -O2: 7 instructions, 28 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -108,6 +114,8 @@ void edge_runner_flat_gyro_gain_f32(const edge_runner_flat_constants_f32 *consta
  * Bound: proved, absolute, by rounding alone, on the whole ranges: spin_rel 1.1e-06 rad/s (seen
  *            1.1e-06).
  * Cost: 1 mul.
+ * On Cortex-M0+, -O2: 123 to 126 instructions, 16 B of code, 40 B of stack.
+ * On Cortex-M4F, -O2: 4 instructions, 16 B of code, 0 B of stack.
  */
 void edge_runner_flat_spin_rel_f32(const edge_runner_flat_constants_f32 *constants, float W,
     float *spin_rel);
@@ -126,6 +134,8 @@ void edge_runner_flat_spin_rel_f32(const edge_runner_flat_constants_f32 *constan
  * Bound: proved, absolute, by rounding alone, on the whole ranges: hinge_radial 0.0054 N (seen
  *            0.0053).
  * Cost: 2 mul.
+ * On Cortex-M0+, -O2: 244 to 251 instructions, 24 B of code, 48 B of stack.
+ * On Cortex-M4F, -O2: 5 instructions, 20 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, constant_mass, newton, rate_seen_from_N, third_law.
  */
 void edge_runner_flat_hinge_radial_f32(const edge_runner_flat_constants_f32 *constants, float W,
@@ -142,6 +152,8 @@ void edge_runner_flat_hinge_radial_f32(const edge_runner_flat_constants_f32 *con
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: hinge_z 0.0019 N (seen 0.0019).
  * Cost: 2 mul.
+ * On Cortex-M0+, -O2: 244 to 251 instructions, 24 B of code, 48 B of stack.
+ * On Cortex-M4F, -O2: 5 instructions, 20 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */

@@ -64,6 +64,7 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 6 operations on pairs.
+ * On Cortex-M0+, -O2: 54572 to 59126 instructions, 1820 B of code, 744 B of stack.
  */
 int edge_runner_flat_setup_f64(double m, double r, double L, double g,
     edge_runner_flat_constants_f64 *constants);
@@ -78,6 +79,7 @@ int edge_runner_flat_setup_f64(double m, double r, double L, double g,
  *            samples of the ranges, 65536 searched from the worst); at 8330 hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: N 6.2e-12 N (seen 6.1e-12).
  * Cost: 1 add, 2 mul.
+ * On Cortex-M0+, -O2: 689 to 737 instructions, 36 B of code, 80 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -95,6 +97,7 @@ void edge_runner_flat_N_f64(const edge_runner_flat_constants_f64 *constants, dou
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: gyro_gain 5e-16 (seen 4.9e-16).
  * Cost: 1 add, 2 mul.
+ * On Cortex-M0+, -O2: 706 to 726 instructions, 40 B of code, 80 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -111,6 +114,7 @@ void edge_runner_flat_gyro_gain_f64(const edge_runner_flat_constants_f64 *consta
  * Bound: proved, absolute, by rounding alone, on the whole ranges: spin_rel 2e-15 rad/s (seen
  *            2e-15).
  * Cost: 1 mul.
+ * On Cortex-M0+, -O2: 299 to 305 instructions, 20 B of code, 72 B of stack.
  */
 void edge_runner_flat_spin_rel_f64(const edge_runner_flat_constants_f64 *constants, double W,
     double *spin_rel);
@@ -129,6 +133,7 @@ void edge_runner_flat_spin_rel_f64(const edge_runner_flat_constants_f64 *constan
  * Bound: proved, absolute, by rounding alone, on the whole ranges: hinge_radial 9.9e-12 N (seen
  *            9.7e-12).
  * Cost: 2 mul.
+ * On Cortex-M0+, -O2: 585 to 598 instructions, 32 B of code, 80 B of stack.
  * Rests on: axes_are_orthonormal, constant_mass, newton, rate_seen_from_N, third_law.
  */
 void edge_runner_flat_hinge_radial_f64(const edge_runner_flat_constants_f64 *constants, double W,
@@ -146,6 +151,7 @@ void edge_runner_flat_hinge_radial_f64(const edge_runner_flat_constants_f64 *con
  * Bound: proved, absolute, by rounding alone, on the whole ranges: hinge_z 3.5e-12 N (seen
  *            3.4e-12).
  * Cost: 2 mul.
+ * On Cortex-M0+, -O2: 586 to 604 instructions, 32 B of code, 80 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */

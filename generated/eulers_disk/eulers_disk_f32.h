@@ -53,6 +53,9 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 7 operations on pairs.
+ * On Cortex-M0+, -O2: 89332 to 90909 instructions, 1424 B of code, 128 B of tables, 432 B of
+ *            stack.
+ * On Cortex-M4F, -O2: 2141 instructions, 1132 B of code, 128 B of tables, 332 B of stack.
  */
 int eulers_disk_setup_f32(float m, float r, float tilt, float g,
     eulers_disk_constants_f32 *constants);
@@ -69,6 +72,8 @@ int eulers_disk_setup_f32(float m, float r, float tilt, float g,
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: steady 2.2e-06 (seen 2e-06).
  * Cost: 1 sub, 2 mul.
+ * On Cortex-M0+, -O2: 307 to 355 instructions, 32 B of code, 48 B of stack.
+ * On Cortex-M4F, -O2: 7 instructions, 28 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -86,6 +91,8 @@ void eulers_disk_steady_f32(const eulers_disk_constants_f32 *constants, float W,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: spin_rel 1.4e-05 rad/s (seen
  *            1.4e-05).
  * Cost: 1 mul.
+ * On Cortex-M0+, -O2: 123 to 126 instructions, 16 B of code, 40 B of stack.
+ * On Cortex-M4F, -O2: 4 instructions, 16 B of code, 0 B of stack.
  */
 void eulers_disk_spin_rel_f32(const eulers_disk_constants_f32 *constants, float W, float *spin_rel);
 
@@ -101,6 +108,8 @@ void eulers_disk_spin_rel_f32(const eulers_disk_constants_f32 *constants, float 
  * Bound: proved, absolute, by rounding alone, on the whole ranges: tipping 7.5e-09 N m (seen
  *            7.5e-09).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 2 to 3 instructions, 8 B of code, 0 B of stack.
+ * On Cortex-M4F, -O2: 3 instructions, 8 B of code, 0 B of stack.
  * Rests on: constant_mass, newton, third_law.
  */
 void eulers_disk_tipping_f32(const eulers_disk_constants_f32 *constants, float *tipping);

@@ -57,6 +57,8 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 7 operations on pairs.
+ * On Cortex-M0+, -O2: 272906 to 284498 instructions, 2194 B of code, 448 B of tables, 792 B of
+ *            stack.
  */
 int eulers_disk_setup_f64(double m, double r, double tilt, double g,
     eulers_disk_constants_f64 *constants);
@@ -73,6 +75,7 @@ int eulers_disk_setup_f64(double m, double r, double tilt, double g,
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: steady 4e-15 (seen 3.8e-15).
  * Cost: 1 sub, 2 mul.
+ * On Cortex-M0+, -O2: 725 to 790 instructions, 40 B of code, 80 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -90,6 +93,7 @@ void eulers_disk_steady_f64(const eulers_disk_constants_f64 *constants, double W
  * Bound: proved, absolute, by rounding alone, on the whole ranges: spin_rel 2.6e-14 rad/s (seen
  *            2.5e-14).
  * Cost: 1 mul.
+ * On Cortex-M0+, -O2: 299 to 306 instructions, 20 B of code, 72 B of stack.
  */
 void eulers_disk_spin_rel_f64(const eulers_disk_constants_f64 *constants, double W,
     double *spin_rel);
@@ -106,6 +110,7 @@ void eulers_disk_spin_rel_f64(const eulers_disk_constants_f64 *constants, double
  * Bound: proved, absolute, by rounding alone, on the whole ranges: tipping 1.4e-17 N m (seen
  *            1.4e-17).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 4 to 5 instructions, 12 B of code, 0 B of stack.
  * Rests on: constant_mass, newton, third_law.
  */
 void eulers_disk_tipping_f64(const eulers_disk_constants_f64 *constants, double *tipping);

@@ -79,6 +79,8 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 120 operations on pairs.
+ * On Cortex-M0+, -O2: 252445 to 257403 instructions, 4982 B of code, 1808 B of stack.
+ * On Cortex-M4F, -O2: 4882 instructions, 4298 B of code, 1628 B of stack.
  */
 int free_body_setup_f32(float I_xx, float I_yy, float I_zz, float I_xy, float I_xz, float I_yz,
     free_body_constants_f32 *constants);
@@ -108,6 +110,8 @@ int free_body_setup_f32(float I_xx, float I_yy, float I_zz, float I_xy, float I_
  * Bound: proved, absolute, by rounding alone, on the whole ranges: omega_dot 4.6e-05 rad/s^2 (seen
  *            3.3e-05).
  * Cost: 13 add, 4 sub, 23 mul.
+ * On Cortex-M0+, -O2: 3972 to 4230 instructions, 428 B of code, 88 B of stack.
+ * On Cortex-M4F, -O2: 64 instructions, 256 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -127,13 +131,18 @@ void free_body_acceleration_f32(const free_body_constants_f32 *constants, const 
  * Bound: proved, absolute, by rounding alone, on the whole ranges: omega_dot 3.4e-05 rad/s^2 (seen
  *            2e-05), jacobian 2.1e-06 (seen 1.8e-06).
  * Cost: 21 add, 12 sub, 48 mul.
+ * On Cortex-M0+, -O2: 8176 to 8554 instructions, 872 B of code, 104 B of stack.
+ * On Cortex-M4F, -O2: 156 instructions, 584 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
 void free_body_acceleration_jacobian_f32(const free_body_constants_f32 *constants,
     const float omega[3], const float moment[3], float omega_dot[3], float jacobian[18]);
 
-/* The same, the whole matrix: 18 entries. */
+/* The same, the whole matrix: 18 entries.
+ * On Cortex-M0+, -O2: 8131 to 8600 instructions, 888 B of code, 120 B of stack.
+ * On Cortex-M4F, -O2: 157 instructions, 588 B of code, 0 B of stack.
+ */
 void free_body_acceleration_jacobian_dense_f32(const free_body_constants_f32 *constants,
     const float omega[3], const float moment[3], float omega_dot[3], float jacobian[18]);
 
@@ -158,6 +167,8 @@ void free_body_acceleration_jacobian_dense_f32(const free_body_constants_f32 *co
  * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 6.4e-05 N m (seen
  *            5.1e-05).
  * Cost: 7 add, 10 sub, 23 mul.
+ * On Cortex-M0+, -O2: 3987 to 4191 instructions, 460 B of code, 96 B of stack.
+ * On Cortex-M4F, -O2: 63 instructions, 252 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -178,6 +189,8 @@ void free_body_moment_f32(const free_body_constants_f32 *constants, const float 
  * Bound: proved, absolute, by rounding alone, on the whole ranges: angular_momentum 3e-06 kg m^2/s
  *            (seen 3e-06).
  * Cost: 6 sub, 9 mul.
+ * On Cortex-M0+, -O2: 1513 to 1660 instructions, 168 B of code, 64 B of stack.
+ * On Cortex-M4F, -O2: 31 instructions, 124 B of code, 0 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void free_body_angular_momentum_f32(const free_body_constants_f32 *constants, const float omega[3],
@@ -210,6 +223,8 @@ void free_body_angular_momentum_f32(const free_body_constants_f32 *constants, co
  * Bound: proved, absolute, by rounding alone, on the whole ranges: rate_in_axes 1.3e-05 N m (seen
  *            1.2e-05), rate_absolute 5.6e-05 N m (seen 4.7e-05).
  * Cost: 7 add, 10 sub, 23 mul.
+ * On Cortex-M0+, -O2: 3963 to 4240 instructions, 440 B of code, 80 B of stack.
+ * On Cortex-M4F, -O2: 70 instructions, 276 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, rate_seen_from_N, rigid.
  */
 void free_body_angular_momentum_rate_f32(const free_body_constants_f32 *constants,
@@ -228,6 +243,8 @@ void free_body_angular_momentum_rate_f32(const free_body_constants_f32 *constant
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 7.1e-05 J (seen
  *            5.7e-05).
  * Cost: 2 add, 3 sub, 9 mul.
+ * On Cortex-M0+, -O2: 1432 to 1543 instructions, 164 B of code, 64 B of stack.
+ * On Cortex-M4F, -O2: 25 instructions, 100 B of code, 0 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void free_body_kinetic_energy_f32(const free_body_constants_f32 *constants, const float omega[3],

@@ -83,6 +83,7 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 120 operations on pairs.
+ * On Cortex-M0+, -O2: 522037 to 548414 instructions, 11130 B of code, 3560 B of stack.
  */
 int free_body_setup_f64(double I_xx, double I_yy, double I_zz, double I_xy, double I_xz,
     double I_yz, free_body_constants_f64 *constants);
@@ -112,6 +113,7 @@ int free_body_setup_f64(double I_xx, double I_yy, double I_zz, double I_xy, doub
  * Bound: proved, absolute, by rounding alone, on the whole ranges: omega_dot 9.7e-14 rad/s^2 (seen
  *            6e-14).
  * Cost: 13 add, 4 sub, 23 mul.
+ * On Cortex-M0+, -O2: 9157 to 9512 instructions, 676 B of code, 152 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -131,13 +133,16 @@ void free_body_acceleration_f64(const free_body_constants_f64 *constants, const 
  * Bound: proved, absolute, by rounding alone, on the whole ranges: omega_dot 6.2e-14 rad/s^2 (seen
  *            4.5e-14), jacobian 3.9e-15 (seen 3.3e-15).
  * Cost: 21 add, 12 sub, 48 mul.
+ * On Cortex-M0+, -O2: 19049 to 19552 instructions, 1548 B of code, 216 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
 void free_body_acceleration_jacobian_f64(const free_body_constants_f64 *constants,
     const double omega[3], const double moment[3], double omega_dot[3], double jacobian[18]);
 
-/* The same, the whole matrix: 18 entries. */
+/* The same, the whole matrix: 18 entries.
+ * On Cortex-M0+, -O2: 19030 to 19610 instructions, 1564 B of code, 232 B of stack.
+ */
 void free_body_acceleration_jacobian_dense_f64(const free_body_constants_f64 *constants,
     const double omega[3], const double moment[3], double omega_dot[3], double jacobian[18]);
 
@@ -162,6 +167,7 @@ void free_body_acceleration_jacobian_dense_f64(const free_body_constants_f64 *co
  * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 1.3e-13 N m (seen
  *            9.3e-14).
  * Cost: 7 add, 10 sub, 23 mul.
+ * On Cortex-M0+, -O2: 9233 to 9541 instructions, 724 B of code, 176 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -182,6 +188,7 @@ void free_body_moment_f64(const free_body_constants_f64 *constants, const double
  * Bound: proved, absolute, by rounding alone, on the whole ranges: angular_momentum 5.8e-15 kg
  *            m^2/s (seen 5.6e-15).
  * Cost: 6 sub, 9 mul.
+ * On Cortex-M0+, -O2: 3543 to 3766 instructions, 292 B of code, 112 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void free_body_angular_momentum_f64(const free_body_constants_f64 *constants, const double omega[3],
@@ -214,6 +221,7 @@ void free_body_angular_momentum_f64(const free_body_constants_f64 *constants, co
  * Bound: proved, absolute, by rounding alone, on the whole ranges: rate_in_axes 2.4e-14 N m (seen
  *            2.3e-14), rate_absolute 1.2e-13 N m (seen 8.2e-14).
  * Cost: 7 add, 10 sub, 23 mul.
+ * On Cortex-M0+, -O2: 9232 to 9638 instructions, 720 B of code, 160 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, rate_seen_from_N, rigid.
  */
 void free_body_angular_momentum_rate_f64(const free_body_constants_f64 *constants,
@@ -233,6 +241,7 @@ void free_body_angular_momentum_rate_f64(const free_body_constants_f64 *constant
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 1.5e-13 J (seen
  *            1.1e-13).
  * Cost: 2 add, 3 sub, 9 mul.
+ * On Cortex-M0+, -O2: 3343 to 3493 instructions, 260 B of code, 112 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void free_body_kinetic_energy_f64(const free_body_constants_f64 *constants, const double omega[3],

@@ -57,6 +57,8 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 12 operations on pairs.
+ * On Cortex-M0+, -O2: 44432 to 45996 instructions, 1484 B of code, 536 B of stack.
+ * On Cortex-M4F, -O2: 972 instructions, 1058 B of code, 300 B of stack.
  */
 int free_body_principal_setup_f32(float I_xx, float I_yy, float I_zz,
     free_body_principal_constants_f32 *constants);
@@ -76,6 +78,8 @@ int free_body_principal_setup_f32(float I_xx, float I_yy, float I_zz,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: omega_dot 1.7e-05 rad/s^2 (seen
  *            1.4e-05).
  * Cost: 2 add, 1 sub, 9 mul.
+ * On Cortex-M0+, -O2: 1265 to 1405 instructions, 128 B of code, 64 B of stack.
+ * On Cortex-M4F, -O2: 28 instructions, 112 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -95,13 +99,18 @@ void free_body_principal_acceleration_f32(const free_body_principal_constants_f3
  * Bound: proved, absolute, by rounding alone, on the whole ranges: omega_dot 1.2e-05 rad/s^2 (seen
  *            1.1e-05), jacobian 5.4e-07 (seen 5.4e-07).
  * Cost: 3 add, 12 mul.
+ * On Cortex-M0+, -O2: 1676 to 1773 instructions, 212 B of code, 80 B of stack.
+ * On Cortex-M4F, -O2: 49 instructions, 180 B of code, 4 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
 void free_body_principal_acceleration_jacobian_f32(const free_body_principal_constants_f32 *constants,
     const float omega[3], const float moment[3], float omega_dot[3], float jacobian[9]);
 
-/* The same, the whole matrix: 18 entries. */
+/* The same, the whole matrix: 18 entries.
+ * On Cortex-M0+, -O2: 1689 to 1798 instructions, 232 B of code, 80 B of stack.
+ * On Cortex-M4F, -O2: 59 instructions, 200 B of code, 4 B of stack.
+ */
 void free_body_principal_acceleration_jacobian_dense_f32(const free_body_principal_constants_f32 *constants,
     const float omega[3], const float moment[3], float omega_dot[3], float jacobian[18]);
 
@@ -120,6 +129,8 @@ void free_body_principal_acceleration_jacobian_dense_f32(const free_body_princip
  * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 2.2e-05 N m (seen
  *            1.8e-05).
  * Cost: 1 add, 2 sub, 9 mul.
+ * On Cortex-M0+, -O2: 1304 to 1429 instructions, 148 B of code, 72 B of stack.
+ * On Cortex-M4F, -O2: 28 instructions, 112 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -140,6 +151,8 @@ void free_body_principal_moment_f32(const free_body_principal_constants_f32 *con
  * Bound: proved, absolute, by rounding alone, on the whole ranges: angular_momentum 9.6e-07 kg
  *            m^2/s (seen 9.5e-07).
  * Cost: 3 mul.
+ * On Cortex-M0+, -O2: 370 to 379 instructions, 44 B of code, 56 B of stack.
+ * On Cortex-M4F, -O2: 13 instructions, 52 B of code, 0 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void free_body_principal_angular_momentum_f32(const free_body_principal_constants_f32 *constants,
@@ -157,6 +170,8 @@ void free_body_principal_angular_momentum_f32(const free_body_principal_constant
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 5.4e-05 J (seen
  *            4.4e-05).
  * Cost: 2 add, 6 mul.
+ * On Cortex-M0+, -O2: 845 to 889 instructions, 88 B of code, 56 B of stack.
+ * On Cortex-M4F, -O2: 16 instructions, 64 B of code, 0 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void free_body_principal_kinetic_energy_f32(const free_body_principal_constants_f32 *constants,

@@ -61,6 +61,7 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 12 operations on pairs.
+ * On Cortex-M0+, -O2: 89526 to 96242 instructions, 2506 B of code, 1024 B of stack.
  */
 int free_body_principal_setup_f64(double I_xx, double I_yy, double I_zz,
     free_body_principal_constants_f64 *constants);
@@ -80,6 +81,7 @@ int free_body_principal_setup_f64(double I_xx, double I_yy, double I_zz,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: omega_dot 3.1e-14 rad/s^2 (seen
  *            2.6e-14).
  * Cost: 2 add, 1 sub, 9 mul.
+ * On Cortex-M0+, -O2: 3039 to 3211 instructions, 196 B of code, 120 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -99,13 +101,16 @@ void free_body_principal_acceleration_f64(const free_body_principal_constants_f6
  * Bound: proved, absolute, by rounding alone, on the whole ranges: omega_dot 2.2e-14 rad/s^2 (seen
  *            2.1e-14), jacobian 1e-15 (seen 1e-15).
  * Cost: 3 add, 12 mul.
+ * On Cortex-M0+, -O2: 4014 to 4132 instructions, 328 B of code, 136 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
 void free_body_principal_acceleration_jacobian_f64(const free_body_principal_constants_f64 *constants,
     const double omega[3], const double moment[3], double omega_dot[3], double jacobian[9]);
 
-/* The same, the whole matrix: 18 entries. */
+/* The same, the whole matrix: 18 entries.
+ * On Cortex-M0+, -O2: 4022 to 4188 instructions, 376 B of code, 136 B of stack.
+ */
 void free_body_principal_acceleration_jacobian_dense_f64(const free_body_principal_constants_f64 *constants,
     const double omega[3], const double moment[3], double omega_dot[3], double jacobian[18]);
 
@@ -124,6 +129,7 @@ void free_body_principal_acceleration_jacobian_dense_f64(const free_body_princip
  * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 4e-14 N m (seen
  *            3.4e-14).
  * Cost: 1 add, 2 sub, 9 mul.
+ * On Cortex-M0+, -O2: 3105 to 3273 instructions, 248 B of code, 136 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -144,6 +150,7 @@ void free_body_principal_moment_f64(const free_body_principal_constants_f64 *con
  * Bound: proved, absolute, by rounding alone, on the whole ranges: angular_momentum 1.8e-15 kg
  *            m^2/s (seen 1.8e-15).
  * Cost: 3 mul.
+ * On Cortex-M0+, -O2: 895 to 931 instructions, 88 B of code, 96 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void free_body_principal_angular_momentum_f64(const free_body_principal_constants_f64 *constants,
@@ -161,6 +168,7 @@ void free_body_principal_angular_momentum_f64(const free_body_principal_constant
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 1.1e-13 J (seen
  *            8.2e-14).
  * Cost: 2 add, 6 mul.
+ * On Cortex-M0+, -O2: 2010 to 2078 instructions, 140 B of code, 104 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void free_body_principal_kinetic_energy_f64(const free_body_principal_constants_f64 *constants,

@@ -52,6 +52,9 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 18 operations on pairs.
+ * On Cortex-M0+, -O2: 95246 to 100540 instructions, 2040 B of code, 128 B of tables, 600 B of
+ *            stack.
+ * On Cortex-M4F, -O2: 2156 to 2209 instructions, 1648 B of code, 128 B of tables, 468 B of stack.
  */
 int gyrocompass_setup_f32(float m, float r, float w3, float lat, float we,
     gyrocompass_constants_f32 *constants);
@@ -69,6 +72,8 @@ int gyrocompass_setup_f32(float m, float r, float w3, float lat, float we,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: alpha_ddot 3.3e-08 rad/s^2
  *            (seen 2.3e-08); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 1 sub, 2 mul, 1 sin, 1 cos.
+ * On Cortex-M0+, -O2: 3838 to 3924 instructions, 572 B of code, 80 B of stack.
+ * On Cortex-M4F, -O2: 92 instructions, 424 B of code, 24 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -88,6 +93,8 @@ void gyrocompass_alpha_ddot_f32(const gyrocompass_constants_f32 *constants, floa
  * Bound: proved, absolute, by rounding alone, on the whole ranges: period_s 9.6e-07 s (seen
  *            9.5e-07).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 2 to 3 instructions, 8 B of code, 0 B of stack.
+ * On Cortex-M4F, -O2: 3 instructions, 8 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -110,6 +117,8 @@ void gyrocompass_period_s_f32(const gyrocompass_constants_f32 *constants, float 
  * Bound: proved, absolute, by rounding alone, on the whole ranges: mass_matrix 9.4e-10 (seen
  *            9.3e-10), damping_matrix 0 (seen 0), stiffness_matrix 4.7e-10 (seen 4.7e-10).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 7 to 8 instructions, 16 B of code, 12 B of stack.
+ * On Cortex-M4F, -O2: 7 instructions, 20 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

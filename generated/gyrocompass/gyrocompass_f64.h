@@ -55,6 +55,8 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 18 operations on pairs.
+ * On Cortex-M0+, -O2: 249645 to 262015 instructions, 3342 B of code, 464 B of tables, 1152 B of
+ *            stack.
  */
 int gyrocompass_setup_f64(double m, double r, double w3, double lat, double we,
     gyrocompass_constants_f64 *constants);
@@ -72,6 +74,7 @@ int gyrocompass_setup_f64(double m, double r, double w3, double lat, double we,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: alpha_ddot 6e-17 rad/s^2 (seen
  *            5.3e-17); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 1 sub, 2 mul, 1 sin, 1 cos.
+ * On Cortex-M0+, -O2: 10213 to 10354 instructions, 936 B of code, 136 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -91,6 +94,7 @@ void gyrocompass_alpha_ddot_f64(const gyrocompass_constants_f64 *constants, doub
  * Bound: proved, absolute, by rounding alone, on the whole ranges: period_s 1.8e-15 s (seen
  *            1.8e-15).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 5 to 6 instructions, 12 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -113,6 +117,7 @@ void gyrocompass_period_s_f64(const gyrocompass_constants_f64 *constants, double
  * Bound: proved, absolute, by rounding alone, on the whole ranges: mass_matrix 1.8e-18 (seen
  *            1.7e-18), damping_matrix 0 (seen 0), stiffness_matrix 8.7e-19 (seen 8.7e-19).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 13 to 14 instructions, 28 B of code, 20 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

@@ -116,6 +116,8 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 83 operations on pairs.
+ * On Cortex-M0+, -O2: 218221 to 222189 instructions, 4202 B of code, 1488 B of stack.
+ * On Cortex-M4F, -O2: 4277 instructions, 3838 B of code, 1292 B of stack.
  */
 int gyrostat_setup_f32(float I_xx, float I_yy, float I_zz, float I_xy, float I_xz, float I_yz,
     float C_1, float C_2, float C_3, gyrostat_constants_f32 *constants);
@@ -146,6 +148,8 @@ int gyrostat_setup_f32(float I_xx, float I_yy, float I_zz, float I_xy, float I_x
  *            rad/s^2 (seen 1.4e-05); assumed: sines and cosines of our own within 0.79 ulp.
  * Singular: at theta = pi/2 + k pi, psi_dot, phi_dot infinite, no number or beyond all measure.
  * Cost: 15 add, 14 sub, 34 mul, 1 div, 2 sin, 2 cos.
+ * On Cortex-M0+, -O2: 13764 to 15343 instructions, 1284 B of code, 176 B of stack.
+ * On Cortex-M4F, -O2: 298 to 300 instructions, 904 B of code, 76 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -180,6 +184,8 @@ void gyrostat_state_rate_f32(const gyrostat_constants_f32 *constants, float thet
  * Singular: at theta = pi/2 + k pi, psi_dot, phi_dot, jacobian infinite, no number or beyond all
  *            measure.
  * Cost: 33 add, 37 sub, 96 mul, 1 div, 20 neg, 2 sin, 2 cos.
+ * On Cortex-M0+, -O2: 24671 to 26391 instructions, 2940 B of code, 216 B of stack.
+ * On Cortex-M4F, -O2: 581 to 583 instructions, 2004 B of code, 100 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -189,7 +195,10 @@ void gyrostat_state_rate_jacobian_f32(const gyrostat_constants_f32 *constants, f
     const float wheel_torques[3], float coordinate_rates[3], float omega_dot[3],
     float wheel_accelerations[3], float jacobian[84]);
 
-/* The same, the whole matrix: 135 entries. */
+/* The same, the whole matrix: 135 entries.
+ * On Cortex-M0+, -O2: 24884 to 26652 instructions, 3424 B of code, 216 B of stack.
+ * On Cortex-M4F, -O2: 633 to 635 instructions, 2164 B of code, 100 B of stack.
+ */
 void gyrostat_state_rate_jacobian_dense_f32(const gyrostat_constants_f32 *constants, float theta,
     float phi, const float omega[3], const float wheel_speeds[3], const float moment[3],
     const float wheel_torques[3], float coordinate_rates[3], float omega_dot[3],
@@ -214,6 +223,8 @@ void gyrostat_state_rate_jacobian_dense_f32(const gyrostat_constants_f32 *consta
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 0.0011 J (seen
  *            0.00087).
  * Cost: 8 add, 3 sub, 15 mul.
+ * On Cortex-M0+, -O2: 2578 to 2706 instructions, 284 B of code, 80 B of stack.
+ * On Cortex-M4F, -O2: 43 instructions, 172 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rigid.
  */
@@ -239,6 +250,8 @@ void gyrostat_kinetic_energy_f32(const gyrostat_constants_f32 *constants, const 
  * Bound: proved, absolute, by rounding alone, on the whole ranges: angular_momentum 1.9e-06 kg
  *            m^2/s (seen 1.8e-06).
  * Cost: 3 add, 6 sub, 12 mul.
+ * On Cortex-M0+, -O2: 2064 to 2274 instructions, 248 B of code, 72 B of stack.
+ * On Cortex-M4F, -O2: 43 instructions, 172 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rigid.
  */

@@ -119,6 +119,7 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 83 operations on pairs.
+ * On Cortex-M0+, -O2: 453988 to 471470 instructions, 9458 B of code, 2984 B of stack.
  */
 int gyrostat_setup_f64(double I_xx, double I_yy, double I_zz, double I_xy, double I_xz, double I_yz,
     double C_1, double C_2, double C_3, gyrostat_constants_f64 *constants);
@@ -149,6 +150,7 @@ int gyrostat_setup_f64(double I_xx, double I_yy, double I_zz, double I_xy, doubl
  *            rad/s^2 (seen 2.3e-14); assumed: sines and cosines of our own within 0.79 ulp.
  * Singular: at theta = pi/2 + k pi, psi_dot, phi_dot infinite, no number or beyond all measure.
  * Cost: 15 add, 14 sub, 34 mul, 1 div, 2 sin, 2 cos.
+ * On Cortex-M0+, -O2: 34297 to 37668 instructions, 2108 B of code, 328 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -183,6 +185,7 @@ void gyrostat_state_rate_f64(const gyrostat_constants_f64 *constants, double the
  * Singular: at theta = pi/2 + k pi, psi_dot, phi_dot, jacobian infinite, no number or beyond all
  *            measure.
  * Cost: 33 add, 37 sub, 96 mul, 1 div, 20 neg, 2 sin, 2 cos.
+ * On Cortex-M0+, -O2: 59479 to 63059 instructions, 5048 B of code, 432 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -192,7 +195,9 @@ void gyrostat_state_rate_jacobian_f64(const gyrostat_constants_f64 *constants, d
     const double wheel_torques[3], double coordinate_rates[3], double omega_dot[3],
     double wheel_accelerations[3], double jacobian[84]);
 
-/* The same, the whole matrix: 135 entries. */
+/* The same, the whole matrix: 135 entries.
+ * On Cortex-M0+, -O2: 59739 to 63340 instructions, 5712 B of code, 568 B of stack.
+ */
 void gyrostat_state_rate_jacobian_dense_f64(const gyrostat_constants_f64 *constants, double theta,
     double phi, const double omega[3], const double wheel_speeds[3], const double moment[3],
     const double wheel_torques[3], double coordinate_rates[3], double omega_dot[3],
@@ -217,6 +222,7 @@ void gyrostat_state_rate_jacobian_dense_f64(const gyrostat_constants_f64 *consta
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 2e-12 J (seen
  *            1.6e-12).
  * Cost: 8 add, 3 sub, 15 mul.
+ * On Cortex-M0+, -O2: 5938 to 6106 instructions, 448 B of code, 152 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rigid.
  */
@@ -242,6 +248,7 @@ void gyrostat_kinetic_energy_f64(const gyrostat_constants_f64 *constants, const 
  * Bound: proved, absolute, by rounding alone, on the whole ranges: angular_momentum 3.7e-15 kg
  *            m^2/s (seen 3.4e-15).
  * Cost: 3 add, 6 sub, 12 mul.
+ * On Cortex-M0+, -O2: 4852 to 5104 instructions, 408 B of code, 128 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rigid.
  */

@@ -63,6 +63,8 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 23 operations on pairs.
+ * On Cortex-M0+, -O2: 118267 to 120239 instructions, 2454 B of code, 688 B of stack.
+ * On Cortex-M4F, -O2: 2522 to 2527 instructions, 1754 B of code, 484 B of stack.
  */
 int heavy_body_setup_f32(float I_xx, float I_yy, float I_zz, float w,
     heavy_body_constants_f32 *constants);
@@ -79,6 +81,8 @@ int heavy_body_setup_f32(float I_xx, float I_yy, float I_zz, float w,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 5.4e-05 J (seen
  *            4.4e-05).
  * Cost: 2 add, 6 mul.
+ * On Cortex-M0+, -O2: 844 to 892 instructions, 88 B of code, 56 B of stack.
+ * On Cortex-M4F, -O2: 16 instructions, 64 B of code, 0 B of stack.
  * Rests on: A_is_fixed, body_triad, body_triad_is_orthonormal, rigid.
  */
 void heavy_body_kinetic_energy_f32(const heavy_body_constants_f32 *constants, const float omega[3],
@@ -99,6 +103,8 @@ void heavy_body_kinetic_energy_f32(const heavy_body_constants_f32 *constants, co
  *            1e-07), omega_next 3.8e-06 rad/s (seen 1e-06); assumed: quaternions given with |q|^2
  *            in 0.999 .. 1.001.
  * Cost: 93 add, 17 sub, 120 mul, 9 div, 9 neg, 2 less, 30 select.
+ * On Cortex-M0+, -O2: 26307 to 27036 instructions, 2968 B of code, 184 B of stack.
+ * On Cortex-M4F, -O2: 380 to 413 instructions, 1824 B of code, 88 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -121,6 +127,8 @@ void heavy_body_step_split2_f32(const heavy_body_constants_f32 *constants, const
  *            1.2e-07), omega_next 3.3e-05 rad/s (seen 1.4e-06); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 588 add, 137 sub, 716 mul, 54 div, 49 neg, 2 less, 90 select.
+ * On Cortex-M0+, -O2: 159537 to 162776 instructions, 16124 B of code, 272 B of stack.
+ * On Cortex-M4F, -O2: 1939 to 2049 instructions, 8980 B of code, 168 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -146,6 +154,8 @@ void heavy_body_step_split_f32(const heavy_body_constants_f32 *constants, const 
  *            |q|^2 in 0.999 .. 1.001.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 76 add, 24 sub, 144 mul, 1 div, 1 sqrt.
+ * On Cortex-M0+, -O2: 23929 to 24610 instructions, 2300 B of code, 216 B of stack.
+ * On Cortex-M4F, -O2: 295 instructions, 1188 B of code, 104 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -169,6 +179,8 @@ void heavy_body_step_rk4_f32(const heavy_body_constants_f32 *constants, const fl
  * Bound: not proved: 8044 operations are more than the 2000 tried; 7826 operations are more than
  *            the 2000 tried.
  * Cost: 3062 add, 1125 sub, 4296 mul, 22 div, 21 neg, 9 sqrt, 28 abs, 3 less, 3 select.
+ * On Cortex-M0+, -O2: 693169 to 855943 instructions, 2964 B of code, 1128 B of stack.
+ * On Cortex-M4F, -O2: 15758 instructions, 2248 B of code, 1088 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.

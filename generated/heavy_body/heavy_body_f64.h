@@ -67,6 +67,7 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 23 operations on pairs.
+ * On Cortex-M0+, -O2: 238131 to 248827 instructions, 3690 B of code, 1328 B of stack.
  */
 int heavy_body_setup_f64(double I_xx, double I_yy, double I_zz, double w,
     heavy_body_constants_f64 *constants);
@@ -83,6 +84,7 @@ int heavy_body_setup_f64(double I_xx, double I_yy, double I_zz, double w,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 1.1e-13 J (seen
  *            8.2e-14).
  * Cost: 2 add, 6 mul.
+ * On Cortex-M0+, -O2: 2018 to 2072 instructions, 140 B of code, 104 B of stack.
  * Rests on: A_is_fixed, body_triad, body_triad_is_orthonormal, rigid.
  */
 void heavy_body_kinetic_energy_f64(const heavy_body_constants_f64 *constants, const double omega[3],
@@ -103,6 +105,7 @@ void heavy_body_kinetic_energy_f64(const heavy_body_constants_f64 *constants, co
  *            1.5e-16), omega_next 7.5e-15 rad/s (seen 1.9e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 93 add, 17 sub, 120 mul, 9 div, 9 neg, 2 less, 30 select.
+ * On Cortex-M0+, -O2: 57500 to 58629 instructions, 4516 B of code, 352 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -125,6 +128,7 @@ void heavy_body_step_split2_f64(const heavy_body_constants_f64 *constants, const
  *            1.6e-16), omega_next 6.2e-14 rad/s (seen 2.3e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 588 add, 137 sub, 716 mul, 54 div, 49 neg, 2 less, 90 select.
+ * On Cortex-M0+, -O2: 350743 to 354860 instructions, 24280 B of code, 528 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -150,6 +154,7 @@ void heavy_body_step_split_f64(const heavy_body_constants_f64 *constants, const 
  *            |q|^2 in 0.999 .. 1.001.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 76 add, 24 sub, 144 mul, 1 div, 1 sqrt.
+ * On Cortex-M0+, -O2: 55292 to 56498 instructions, 3516 B of code, 416 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -173,6 +178,7 @@ void heavy_body_step_rk4_f64(const heavy_body_constants_f64 *constants, const do
  * Bound: not proved: 8044 operations are more than the 2000 tried; 7826 operations are more than
  *            the 2000 tried.
  * Cost: 3062 add, 1125 sub, 4296 mul, 22 div, 21 neg, 9 sqrt, 28 abs, 3 less, 3 select.
+ * On Cortex-M0+, -O2: 1910744 to 1922175 instructions, 4716 B of code, 2176 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.

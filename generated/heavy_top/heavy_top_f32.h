@@ -58,6 +58,8 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 7 operations on pairs.
+ * On Cortex-M0+, -O2: 22350 to 22955 instructions, 1116 B of code, 304 B of stack.
+ * On Cortex-M4F, -O2: 424 instructions, 694 B of code, 192 B of stack.
  */
 int heavy_top_setup_f32(float A, float C, float m, float g, float l,
     heavy_top_constants_f32 *constants);
@@ -85,6 +87,8 @@ int heavy_top_setup_f32(float A, float C, float m, float g, float l,
  * Singular: at theta = k pi, psi_dot, phi_dot, omega_dot_x, omega_dot_y infinite, no number or
  *            beyond all measure.
  * Cost: 3 sub, 5 mul, 1 div, 1 sin, 1 cos.
+ * On Cortex-M0+, -O2: 4763 to 5609 instructions, 696 B of code, 128 B of stack.
+ * On Cortex-M4F, -O2: 117 to 118 instructions, 524 B of code, 44 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -110,6 +114,8 @@ void heavy_top_state_rate_f32(const heavy_top_constants_f32 *constants, float th
  * Singular: at theta = k pi, psi_dot, phi_dot, omega_dot_x, omega_dot_y, jacobian infinite, no
  *            number or beyond all measure.
  * Cost: 1 add, 5 sub, 15 mul, 1 div, 4 neg, 1 sin, 1 cos.
+ * On Cortex-M0+, -O2: 6212 to 7073 instructions, 884 B of code, 144 B of stack.
+ * On Cortex-M4F, -O2: 149 to 150 instructions, 656 B of code, 44 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -117,7 +123,10 @@ void heavy_top_state_rate_f32(const heavy_top_constants_f32 *constants, float th
 void heavy_top_state_rate_jacobian_f32(const heavy_top_constants_f32 *constants, float theta,
     const float omega[3], float coordinate_rates[3], float omega_dot[3], float jacobian[13]);
 
-/* The same, the whole matrix: 36 entries. */
+/* The same, the whole matrix: 36 entries.
+ * On Cortex-M0+, -O2: 6228 to 7100 instructions, 936 B of code, 144 B of stack.
+ * On Cortex-M4F, -O2: 172 to 173 instructions, 704 B of code, 44 B of stack.
+ */
 void heavy_top_state_rate_jacobian_dense_f32(const heavy_top_constants_f32 *constants, float theta,
     const float omega[3], float coordinate_rates[3], float omega_dot[3], float jacobian[36]);
 
@@ -134,6 +143,8 @@ void heavy_top_state_rate_jacobian_dense_f32(const heavy_top_constants_f32 *cons
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 4.7e-08 J (seen
  *            3.4e-08).
  * Cost: 2 add, 5 mul.
+ * On Cortex-M0+, -O2: 723 to 767 instructions, 80 B of code, 56 B of stack.
+ * On Cortex-M4F, -O2: 14 instructions, 56 B of code, 0 B of stack.
  * Rests on: A_is_fixed, axes_are_orthonormal, body_triad, body_triad_is_orthonormal,
  *            composed_turns, further_axes_are_right_handed, rigid.
  */
@@ -155,6 +166,8 @@ void heavy_top_kinetic_energy_f32(const heavy_top_constants_f32 *constants, cons
  * Bound: proved, absolute, by rounding alone, on the whole ranges: angular_momentum 9.4e-10 kg
  *            m^2/s (seen 9.3e-10).
  * Cost: 3 mul.
+ * On Cortex-M0+, -O2: 370 to 379 instructions, 44 B of code, 56 B of stack.
+ * On Cortex-M4F, -O2: 13 instructions, 52 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rigid.
  */

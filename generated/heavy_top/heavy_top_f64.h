@@ -61,6 +61,7 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 7 operations on pairs.
+ * On Cortex-M0+, -O2: 46822 to 48378 instructions, 1718 B of code, 560 B of stack.
  */
 int heavy_top_setup_f64(double A, double C, double m, double g, double l,
     heavy_top_constants_f64 *constants);
@@ -88,6 +89,7 @@ int heavy_top_setup_f64(double A, double C, double m, double g, double l,
  * Singular: at theta = k pi, psi_dot, phi_dot, omega_dot_x, omega_dot_y infinite, no number or
  *            beyond all measure.
  * Cost: 3 sub, 5 mul, 1 div, 1 sin, 1 cos.
+ * On Cortex-M0+, -O2: 12116 to 13884 instructions, 1140 B of code, 208 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -113,6 +115,7 @@ void heavy_top_state_rate_f64(const heavy_top_constants_f64 *constants, double t
  * Singular: at theta = k pi, psi_dot, phi_dot, omega_dot_x, omega_dot_y, jacobian infinite, no
  *            number or beyond all measure.
  * Cost: 1 add, 5 sub, 15 mul, 1 div, 4 neg, 1 sin, 1 cos.
+ * On Cortex-M0+, -O2: 15609 to 17385 instructions, 1464 B of code, 248 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -120,7 +123,9 @@ void heavy_top_state_rate_f64(const heavy_top_constants_f64 *constants, double t
 void heavy_top_state_rate_jacobian_f64(const heavy_top_constants_f64 *constants, double theta,
     const double omega[3], double coordinate_rates[3], double omega_dot[3], double jacobian[13]);
 
-/* The same, the whole matrix: 36 entries. */
+/* The same, the whole matrix: 36 entries.
+ * On Cortex-M0+, -O2: 15710 to 17520 instructions, 1648 B of code, 256 B of stack.
+ */
 void heavy_top_state_rate_jacobian_dense_f64(const heavy_top_constants_f64 *constants, double theta,
     const double omega[3], double coordinate_rates[3], double omega_dot[3], double jacobian[36]);
 
@@ -137,6 +142,7 @@ void heavy_top_state_rate_jacobian_dense_f64(const heavy_top_constants_f64 *cons
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 8.7e-17 J (seen
  *            6.2e-17).
  * Cost: 2 add, 5 mul.
+ * On Cortex-M0+, -O2: 1704 to 1763 instructions, 128 B of code, 104 B of stack.
  * Rests on: A_is_fixed, axes_are_orthonormal, body_triad, body_triad_is_orthonormal,
  *            composed_turns, further_axes_are_right_handed, rigid.
  */
@@ -158,6 +164,7 @@ void heavy_top_kinetic_energy_f64(const heavy_top_constants_f64 *constants, cons
  * Bound: proved, absolute, by rounding alone, on the whole ranges: angular_momentum 1.8e-18 kg
  *            m^2/s (seen 1.7e-18).
  * Cost: 3 mul.
+ * On Cortex-M0+, -O2: 913 to 931 instructions, 88 B of code, 96 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rigid.
  */

@@ -52,6 +52,8 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 6 operations on pairs.
+ * On Cortex-M0+, -O2: 12887 to 13266 instructions, 656 B of code, 256 B of stack.
+ * On Cortex-M4F, -O2: 242 instructions, 460 B of code, 128 B of stack.
  */
 int propeller_3_blade_setup_f32(float blade_mass, float blade_length, float p, float W,
     propeller_3_blade_constants_f32 *constants);
@@ -65,6 +67,8 @@ int propeller_3_blade_setup_f32(float blade_mass, float blade_length, float p, f
  *            of the ranges, 65536 searched from the worst); at 8312 hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: M 0.00025 N m (seen 0.00024).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 6 to 7 instructions, 12 B of code, 0 B of stack.
+ * On Cortex-M4F, -O2: 6 instructions, 12 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */

@@ -56,6 +56,7 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 6 operations on pairs.
+ * On Cortex-M0+, -O2: 24998 to 28311 instructions, 1024 B of code, 456 B of stack.
  */
 int propeller_3_blade_setup_f64(double blade_mass, double blade_length, double p, double W,
     propeller_3_blade_constants_f64 *constants);
@@ -69,6 +70,7 @@ int propeller_3_blade_setup_f64(double blade_mass, double blade_length, double p
  *            of the ranges, 65536 searched from the worst); at 8312 hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: M 4.6e-13 N m (seen 4.5e-13).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 12 to 13 instructions, 24 B of code, 12 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */

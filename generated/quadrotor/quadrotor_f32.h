@@ -114,6 +114,8 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 71 operations on pairs.
+ * On Cortex-M0+, -O2: 163889 to 166946 instructions, 3590 B of code, 1440 B of stack.
+ * On Cortex-M4F, -O2: 3285 instructions, 3170 B of code, 1244 B of stack.
  */
 int quadrotor_setup_f32(float m, float I_x, float I_y, float I_z, float d, float m_r, float J_r,
     float c_T, float c_Q, float g, quadrotor_constants_f32 *constants);
@@ -157,6 +159,8 @@ int quadrotor_setup_f32(float m, float I_x, float I_y, float I_z, float d, float
  *            0.002 rad/s^2 (seen 0.0018), attitude_hull_rate 6e-07 1/s (seen 5.7e-07); assumed:
  *            quaternions given with |q|^2 in 0.999 .. 1.001.
  * Cost: 13 add, 22 sub, 49 mul, 2 neg.
+ * On Cortex-M0+, -O2: 8613 to 9002 instructions, 960 B of code, 168 B of stack.
+ * On Cortex-M4F, -O2: 151 instructions, 592 B of code, 36 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -197,6 +201,8 @@ void quadrotor_state_rate_f32(const quadrotor_constants_f32 *constants, const fl
  *            jacobian 0.00098 (seen 0.00098); assumed: quaternions given with |q|^2 in 0.999 ..
  *            1.001.
  * Cost: 19 add, 36 sub, 106 mul, 13 neg.
+ * On Cortex-M0+, -O2: 17164 to 17748 instructions, 2012 B of code, 144 B of stack.
+ * On Cortex-M4F, -O2: 340 instructions, 1336 B of code, 64 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -206,7 +212,10 @@ void quadrotor_state_rate_jacobian_f32(const quadrotor_constants_f32 *constants,
     const float u[4], float p_rate[3], float p_dot_rate[3], float w_rate[3], float s_rate[4],
     float attitude_hull_rate[4], float jacobian[75]);
 
-/* The same, the whole matrix: 357 entries. */
+/* The same, the whole matrix: 357 entries.
+ * On Cortex-M0+, -O2: 18426 to 19002 instructions, 4728 B of code, 816 B of stack.
+ * On Cortex-M4F, -O2: 725 instructions, 2628 B of code, 92 B of stack.
+ */
 void quadrotor_state_rate_jacobian_dense_f32(const quadrotor_constants_f32 *constants,
     const float p_dot[3], const float w[3], const float s[4], const float attitude_hull[4],
     const float u[4], float p_rate[3], float p_dot_rate[3], float w_rate[3], float s_rate[4],
@@ -231,6 +240,8 @@ void quadrotor_state_rate_jacobian_dense_f32(const quadrotor_constants_f32 *cons
  * Bound: proved, absolute, by rounding alone, on the whole ranges: energy 0.0028 J (seen 0.0025);
  *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001.
  * Cost: 23 add, 17 sub, 60 mul.
+ * On Cortex-M0+, -O2: 9711 to 10063 instructions, 964 B of code, 168 B of stack.
+ * On Cortex-M4F, -O2: 133 instructions, 528 B of code, 36 B of stack.
  * Rests on: A_is_G, axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass,
  *            rate_seen_from_N, rigid.
  */
@@ -263,6 +274,8 @@ void quadrotor_energy_f32(const quadrotor_constants_f32 *constants, const float 
  * Bound: proved, absolute, by rounding alone, on the whole ranges: gyro_x 2.9e-07 N m (seen
  *            2.8e-07), gyro_y 2.9e-07 N m (seen 2.8e-07).
  * Cost: 2 add, 7 sub, 12 mul, 1 neg.
+ * On Cortex-M0+, -O2: 2137 to 2325 instructions, 244 B of code, 80 B of stack.
+ * On Cortex-M4F, -O2: 39 instructions, 152 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -301,6 +314,8 @@ void quadrotor_gyro_f32(const quadrotor_constants_f32 *constants, const float w[
  *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001.
  * Singular: at attitude_hull = 0, attitude_hull_next infinite, no number or beyond all measure.
  * Cost: 176 add, 110 sub, 311 mul, 1 div, 1 sqrt.
+ * On Cortex-M0+, -O2: 56608 to 58274 instructions, 5416 B of code, 416 B of stack.
+ * On Cortex-M4F, -O2: 812 instructions, 3268 B of code, 240 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.

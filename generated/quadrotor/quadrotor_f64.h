@@ -118,6 +118,7 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 71 operations on pairs.
+ * On Cortex-M0+, -O2: 345557 to 353811 instructions, 8578 B of code, 2840 B of stack.
  */
 int quadrotor_setup_f64(double m, double I_x, double I_y, double I_z, double d, double m_r,
     double J_r, double c_T, double c_Q, double g, quadrotor_constants_f64 *constants);
@@ -161,6 +162,7 @@ int quadrotor_setup_f64(double m, double I_x, double I_y, double I_z, double d, 
  *            s_rate 3.6e-12 rad/s^2 (seen 3.4e-12), attitude_hull_rate 1.2e-15 1/s (seen 1.1e-15);
  *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001.
  * Cost: 13 add, 22 sub, 49 mul, 2 neg.
+ * On Cortex-M0+, -O2: 19878 to 20295 instructions, 1500 B of code, 320 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -201,6 +203,7 @@ void quadrotor_state_rate_f64(const quadrotor_constants_f64 *constants, const do
  *            jacobian 1.9e-12 (seen 1.8e-12); assumed: quaternions given with |q|^2 in 0.999 ..
  *            1.001.
  * Cost: 19 add, 36 sub, 106 mul, 13 neg.
+ * On Cortex-M0+, -O2: 40171 to 40967 instructions, 3544 B of code, 384 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -210,7 +213,9 @@ void quadrotor_state_rate_jacobian_f64(const quadrotor_constants_f64 *constants,
     const double u[4], double p_rate[3], double p_dot_rate[3], double w_rate[3], double s_rate[4],
     double attitude_hull_rate[4], double jacobian[75]);
 
-/* The same, the whole matrix: 357 entries. */
+/* The same, the whole matrix: 357 entries.
+ * On Cortex-M0+, -O2: 42622 to 43392 instructions, 8468 B of code, 1144 B of stack.
+ */
 void quadrotor_state_rate_jacobian_dense_f64(const quadrotor_constants_f64 *constants,
     const double p_dot[3], const double w[3], const double s[4], const double attitude_hull[4],
     const double u[4], double p_rate[3], double p_dot_rate[3], double w_rate[3], double s_rate[4],
@@ -235,6 +240,7 @@ void quadrotor_state_rate_jacobian_dense_f64(const quadrotor_constants_f64 *cons
  * Bound: proved, absolute, by rounding alone, on the whole ranges: energy 5.2e-12 J (seen
  *            4.5e-12); assumed: quaternions given with |q|^2 in 0.999 .. 1.001.
  * Cost: 23 add, 17 sub, 60 mul.
+ * On Cortex-M0+, -O2: 22706 to 23076 instructions, 1516 B of code, 360 B of stack.
  * Rests on: A_is_G, axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass,
  *            rate_seen_from_N, rigid.
  */
@@ -267,6 +273,7 @@ void quadrotor_energy_f64(const quadrotor_constants_f64 *constants, const double
  * Bound: proved, absolute, by rounding alone, on the whole ranges: gyro_x 5.4e-16 N m (seen
  *            5.2e-16), gyro_y 5.4e-16 N m (seen 5.2e-16).
  * Cost: 2 add, 7 sub, 12 mul, 1 neg.
+ * On Cortex-M0+, -O2: 4920 to 5158 instructions, 408 B of code, 152 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -305,6 +312,7 @@ void quadrotor_gyro_f64(const quadrotor_constants_f64 *constants, const double w
  *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001.
  * Singular: at attitude_hull = 0, attitude_hull_next infinite, no number or beyond all measure.
  * Cost: 176 add, 110 sub, 311 mul, 1 div, 1 sqrt.
+ * On Cortex-M0+, -O2: 129145 to 131412 instructions, 8280 B of code, 816 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.

@@ -99,6 +99,8 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 58 operations on pairs.
+ * On Cortex-M0+, -O2: 120679 to 122495 instructions, 2814 B of code, 1176 B of stack.
+ * On Cortex-M4F, -O2: 2380 instructions, 2706 B of code, 1004 B of stack.
  */
 int rattleback_setup_f32(float m, float a, float b, float c, float h, float A, float B, float C,
     float D, float n, float g, rattleback_constants_f32 *constants);
@@ -128,6 +130,8 @@ int rattleback_setup_f32(float m, float a, float b, float c, float h, float A, f
  * Singular: at alpha = pi/2 + k pi, beta_dot_rate, W_rate infinite, no number or beyond all
  *            measure.
  * Cost: 54 add, 52 sub, 201 mul, 3 div, 3 neg, 1 sqrt, 2 sin, 2 cos.
+ * On Cortex-M0+, -O2: 40770 to 41350 instructions, 3560 B of code, 320 B of stack.
+ * On Cortex-M4F, -O2: 579 instructions, 2048 B of code, 188 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -165,6 +169,8 @@ void rattleback_state_rate_f32(const rattleback_constants_f32 *constants, float 
  *            5.8e-11), damping_matrix 7.5e-09 (seen 7.5e-09), stiffness_matrix 9.6e-07 (seen
  *            9.5e-07).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 41 to 42 instructions, 84 B of code, 12 B of stack.
+ * On Cortex-M4F, -O2: 41 instructions, 140 B of code, 4 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -189,6 +195,8 @@ void rattleback_linearised_f32(const rattleback_constants_f32 *constants, float 
  * Bound: proved, absolute, by rounding alone, on the whole ranges: energy_of_all 7e-07 J (seen
  *            4e-07); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 12 add, 5 sub, 39 mul, 1 div, 1 sqrt, 2 sin, 2 cos.
+ * On Cortex-M0+, -O2: 13781 to 14014 instructions, 1128 B of code, 160 B of stack.
+ * On Cortex-M4F, -O2: 266 instructions, 804 B of code, 92 B of stack.
  * Rests on: A_is_G, axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, rigid.
  */
@@ -223,6 +231,8 @@ void rattleback_energy_of_all_f32(const rattleback_constants_f32 *constants, flo
  * Singular: at alpha = pi/2 + k pi, alpha_dot_next, beta_next, beta_dot_next, W_next infinite, no
  *            number or beyond all measure.
  * Cost: 239 add, 224 sub, 860 mul, 12 div, 4 sqrt, 8 sin, 8 cos.
+ * On Cortex-M0+, -O2: 171992 to 173898 instructions, 13140 B of code, 616 B of stack.
+ * On Cortex-M4F, -O2: 2574 instructions, 8156 B of code, 476 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

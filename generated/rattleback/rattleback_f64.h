@@ -103,6 +103,7 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 58 operations on pairs.
+ * On Cortex-M0+, -O2: 250725 to 254976 instructions, 6442 B of code, 2312 B of stack.
  */
 int rattleback_setup_f64(double m, double a, double b, double c, double h, double A, double B,
     double C, double D, double n, double g, rattleback_constants_f64 *constants);
@@ -133,6 +134,7 @@ int rattleback_setup_f64(double m, double a, double b, double c, double h, doubl
  * Singular: at alpha = pi/2 + k pi, beta_dot_rate, W_rate infinite, no number or beyond all
  *            measure.
  * Cost: 54 add, 52 sub, 201 mul, 3 div, 3 neg, 1 sqrt, 2 sin, 2 cos.
+ * On Cortex-M0+, -O2: 97621 to 98505 instructions, 5588 B of code, 616 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -170,6 +172,7 @@ void rattleback_state_rate_f64(const rattleback_constants_f64 *constants, double
  *            1.1e-19), damping_matrix 1.4e-17 (seen 1.4e-17), stiffness_matrix 1.8e-15 (seen
  *            1.8e-15).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 91 to 92 instructions, 184 B of code, 24 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -194,6 +197,7 @@ void rattleback_linearised_f64(const rattleback_constants_f64 *constants, double
  * Bound: proved, absolute, by rounding alone, on the whole ranges: energy_of_all 1.4e-15 J (seen
  *            6.4e-16); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 12 add, 5 sub, 39 mul, 1 div, 1 sqrt, 2 sin, 2 cos.
+ * On Cortex-M0+, -O2: 34782 to 35367 instructions, 1852 B of code, 296 B of stack.
  * Rests on: A_is_G, axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, rigid.
  */
@@ -227,6 +231,7 @@ void rattleback_energy_of_all_f64(const rattleback_constants_f64 *constants, dou
  * Singular: at alpha = pi/2 + k pi, alpha_dot_next, beta_next, beta_dot_next, W_next infinite, no
  *            number or beyond all measure.
  * Cost: 239 add, 224 sub, 860 mul, 12 div, 4 sqrt, 8 sin, 8 cos.
+ * On Cortex-M0+, -O2: 411248 to 414227 instructions, 20524 B of code, 1192 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

@@ -72,6 +72,8 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 66 operations on pairs.
+ * On Cortex-M0+, -O2: 161525 to 165719 instructions, 2726 B of code, 1072 B of stack.
+ * On Cortex-M4F, -O2: 3256 instructions, 2766 B of code, 916 B of stack.
  */
 int reaction_wheel_satellite_setup_f32(float J_xx, float J_yy, float J_zz, float J_xy, float J_xz,
     float J_yz, float I_w, reaction_wheel_satellite_constants_f32 *constants);
@@ -114,6 +116,8 @@ int reaction_wheel_satellite_setup_f32(float J_xx, float J_yy, float J_zz, float
  *            6e-07), w_y_dot 5.8e-07 rad/s^2 (seen 4.2e-07), w_z_dot 9.1e-07 rad/s^2 (seen
  *            6.3e-07).
  * Cost: 6 add, 14 sub, 26 mul.
+ * On Cortex-M0+, -O2: 4598 to 4884 instructions, 484 B of code, 80 B of stack.
+ * On Cortex-M4F, -O2: 67 instructions, 268 B of code, 8 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -157,6 +161,8 @@ void reaction_wheel_satellite_body_f32(const reaction_wheel_satellite_constants_
  *            5.5e-06), s_2_dot 6.3e-06 rad/s^2 (seen 5.3e-06), s_3_dot 6.5e-06 rad/s^2 (seen
  *            5.6e-06).
  * Cost: 6 add, 17 sub, 29 mul.
+ * On Cortex-M0+, -O2: 5179 to 5425 instructions, 540 B of code, 88 B of stack.
+ * On Cortex-M4F, -O2: 77 instructions, 308 B of code, 8 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */

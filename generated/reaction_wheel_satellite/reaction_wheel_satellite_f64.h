@@ -75,6 +75,7 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 66 operations on pairs.
+ * On Cortex-M0+, -O2: 333867 to 351050 instructions, 5710 B of code, 2104 B of stack.
  */
 int reaction_wheel_satellite_setup_f64(double J_xx, double J_yy, double J_zz, double J_xy,
     double J_xz, double J_yz, double I_w, reaction_wheel_satellite_constants_f64 *constants);
@@ -117,6 +118,7 @@ int reaction_wheel_satellite_setup_f64(double J_xx, double J_yy, double J_zz, do
  *            1e-15), w_y_dot 1.2e-15 rad/s^2 (seen 7.4e-16), w_z_dot 1.8e-15 rad/s^2 (seen
  *            1.1e-15).
  * Cost: 6 add, 14 sub, 26 mul.
+ * On Cortex-M0+, -O2: 10615 to 10966 instructions, 732 B of code, 136 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -159,6 +161,7 @@ void reaction_wheel_satellite_body_f64(const reaction_wheel_satellite_constants_
  * Bound: proved, absolute, by rounding alone, on the whole ranges: s_1_dot 1.2e-14 rad/s^2 (seen
  *            1e-14), s_2_dot 1.2e-14 rad/s^2 (seen 1e-14), s_3_dot 1.3e-14 rad/s^2 (seen 1e-14).
  * Cost: 6 add, 17 sub, 29 mul.
+ * On Cortex-M0+, -O2: 11967 to 12299 instructions, 824 B of code, 136 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */

@@ -88,6 +88,8 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 123 operations on pairs.
+ * On Cortex-M0+, -O2: 265655 to 271535 instructions, 5430 B of code, 1880 B of stack.
+ * On Cortex-M4F, -O2: 5171 instructions, 4510 B of code, 1700 B of stack.
  */
 int rigid_body_setup_f32(float m, float I_xx, float I_yy, float I_zz, float I_xy, float I_xz,
     float I_yz, rigid_body_constants_f32 *constants);
@@ -130,6 +132,8 @@ int rigid_body_setup_f32(float m, float I_xx, float I_yy, float I_zz, float I_xy
  *            omega_dot 4.6e-05 rad/s^2 (seen 3.1e-05); assumed: quaternions given with |q|^2 in
  *            0.999 .. 1.001.
  * Cost: 21 add, 16 sub, 59 mul, 1 neg.
+ * On Cortex-M0+, -O2: 9658 to 10084 instructions, 1076 B of code, 136 B of stack.
+ * On Cortex-M4F, -O2: 155 instructions, 596 B of code, 28 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -162,6 +166,8 @@ void rigid_body_state_rate_f32(const rigid_body_constants_f32 *constants, const 
  *            omega_dot 3.4e-05 rad/s^2 (seen 2e-05), jacobian 3.5e-05 (seen 1.8e-05); assumed:
  *            quaternions given with |q|^2 in 0.999 .. 1.001.
  * Cost: 43 add, 30 sub, 98 mul, 11 neg.
+ * On Cortex-M0+, -O2: 17387 to 18036 instructions, 2128 B of code, 192 B of stack.
+ * On Cortex-M4F, -O2: 346 instructions, 1344 B of code, 96 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -171,7 +177,10 @@ void rigid_body_state_rate_jacobian_f32(const rigid_body_constants_f32 *constant
     const float moment[3], float position_rate[3], float attitude_rate[4], float velocity_rate[3],
     float omega_dot[3], float jacobian[66]);
 
-/* The same, the whole matrix: 247 entries. */
+/* The same, the whole matrix: 247 entries.
+ * On Cortex-M0+, -O2: 18098 to 18716 instructions, 3764 B of code, 504 B of stack.
+ * On Cortex-M4F, -O2: 528 instructions, 2012 B of code, 96 B of stack.
+ */
 void rigid_body_state_rate_jacobian_dense_f32(const rigid_body_constants_f32 *constants,
     const float attitude[4], const float velocity[3], const float omega[3], const float force[3],
     const float moment[3], float position_rate[3], float attitude_rate[4], float velocity_rate[3],
@@ -192,6 +201,8 @@ void rigid_body_state_rate_jacobian_dense_f32(const rigid_body_constants_f32 *co
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 0.028 J (seen
  *            0.024).
  * Cost: 5 add, 3 sub, 13 mul.
+ * On Cortex-M0+, -O2: 2105 to 2217 instructions, 232 B of code, 72 B of stack.
+ * On Cortex-M4F, -O2: 36 instructions, 144 B of code, 0 B of stack.
  * Rests on: A_is_G, body_triad, body_triad_is_orthonormal, constant_mass, rigid.
  */
 void rigid_body_kinetic_energy_f32(const rigid_body_constants_f32 *constants,
@@ -218,6 +229,8 @@ void rigid_body_kinetic_energy_f32(const rigid_body_constants_f32 *constants,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 6.3e-05 N m (seen
  *            4.8e-05).
  * Cost: 7 add, 10 sub, 23 mul.
+ * On Cortex-M0+, -O2: 3979 to 4207 instructions, 468 B of code, 96 B of stack.
+ * On Cortex-M4F, -O2: 63 instructions, 252 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */

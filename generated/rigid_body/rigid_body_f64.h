@@ -91,6 +91,7 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 123 operations on pairs.
+ * On Cortex-M0+, -O2: 551735 to 576257 instructions, 11882 B of code, 3720 B of stack.
  */
 int rigid_body_setup_f64(double m, double I_xx, double I_yy, double I_zz, double I_xy, double I_xz,
     double I_yz, rigid_body_constants_f64 *constants);
@@ -133,6 +134,7 @@ int rigid_body_setup_f64(double m, double I_xx, double I_yy, double I_zz, double
  *            omega_dot 9.8e-14 rad/s^2 (seen 5.6e-14); assumed: quaternions given with |q|^2 in
  *            0.999 .. 1.001.
  * Cost: 21 add, 16 sub, 59 mul, 1 neg.
+ * On Cortex-M0+, -O2: 22398 to 22956 instructions, 1672 B of code, 256 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -165,6 +167,7 @@ void rigid_body_state_rate_f64(const rigid_body_constants_f64 *constants, const 
  *            omega_dot 6.3e-14 rad/s^2 (seen 4e-14), jacobian 6.4e-14 (seen 4e-14); assumed:
  *            quaternions given with |q|^2 in 0.999 .. 1.001.
  * Cost: 43 add, 30 sub, 98 mul, 11 neg.
+ * On Cortex-M0+, -O2: 40168 to 40881 instructions, 3736 B of code, 424 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -174,7 +177,9 @@ void rigid_body_state_rate_jacobian_f64(const rigid_body_constants_f64 *constant
     const double force[3], const double moment[3], double position_rate[3], double attitude_rate[4],
     double velocity_rate[3], double omega_dot[3], double jacobian[66]);
 
-/* The same, the whole matrix: 247 entries. */
+/* The same, the whole matrix: 247 entries.
+ * On Cortex-M0+, -O2: 41807 to 42436 instructions, 6968 B of code, 960 B of stack.
+ */
 void rigid_body_state_rate_jacobian_dense_f64(const rigid_body_constants_f64 *constants,
     const double attitude[4], const double velocity[3], const double omega[3],
     const double force[3], const double moment[3], double position_rate[3], double attitude_rate[4],
@@ -195,6 +200,7 @@ void rigid_body_state_rate_jacobian_dense_f64(const rigid_body_constants_f64 *co
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 5.2e-11 J (seen
  *            4.5e-11).
  * Cost: 5 add, 3 sub, 13 mul.
+ * On Cortex-M0+, -O2: 4932 to 5097 instructions, 376 B of code, 128 B of stack.
  * Rests on: A_is_G, body_triad, body_triad_is_orthonormal, constant_mass, rigid.
  */
 void rigid_body_kinetic_energy_f64(const rigid_body_constants_f64 *constants,
@@ -221,6 +227,7 @@ void rigid_body_kinetic_energy_f64(const rigid_body_constants_f64 *constants,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 1.3e-13 N m (seen
  *            9.3e-14).
  * Cost: 7 add, 10 sub, 23 mul.
+ * On Cortex-M0+, -O2: 9247 to 9552 instructions, 732 B of code, 176 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */

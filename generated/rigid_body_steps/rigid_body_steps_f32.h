@@ -82,6 +82,8 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 119 operations on pairs.
+ * On Cortex-M0+, -O2: 258036 to 263918 instructions, 5062 B of code, 1776 B of stack.
+ * On Cortex-M4F, -O2: 5019 instructions, 4302 B of code, 1596 B of stack.
  */
 int rigid_body_steps_setup_f32(float m, float I_xx, float I_yy, float I_zz, float I_xy, float I_xz,
     float I_yz, rigid_body_steps_constants_f32 *constants);
@@ -113,6 +115,8 @@ int rigid_body_steps_setup_f32(float m, float I_xx, float I_yy, float I_zz, floa
  *            |q|^2 in 0.999 .. 1.001.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 204 add, 64 sub, 363 mul, 1 div, 4 neg, 1 sqrt.
+ * On Cortex-M0+, -O2: 62725 to 64119 instructions, 1528 B of code, 16 B of tables, 408 B of stack.
+ * On Cortex-M4F, -O2: 1391 instructions, 1012 B of code, 16 B of tables, 364 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -147,6 +151,9 @@ void rigid_body_steps_step_rk4_f32(const rigid_body_steps_constants_f32 *constan
  * Bound: not proved: 3978 operations are more than the 2000 tried.
  * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.
  * Cost: 2322 add, 460 sub, 3223 mul, 1 div, 250 neg, 1 sqrt.
+ * On Cortex-M0+, -O2: 510070 to 514414 instructions, 6968 B of code, 22 B of tables, 1200 B of
+ *            stack.
+ * On Cortex-M4F, -O2: 9887 instructions, 4624 B of code, 22 B of tables, 1164 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -156,7 +163,11 @@ void rigid_body_steps_step_rk4_jacobian_f32(const rigid_body_steps_constants_f32
     const float force[3], const float moment[3], float time_step, float position_next[3],
     float attitude_next[4], float velocity_next[3], float omega_next[3], float jacobian[145]);
 
-/* The same, the whole matrix: 247 entries. */
+/* The same, the whole matrix: 247 entries.
+ * On Cortex-M0+, -O2: 511857 to 516753 instructions, 7064 B of code, 167 B of tables, 1840 B of
+ *            stack.
+ * On Cortex-M4F, -O2: 11253 instructions, 4716 B of code, 167 B of tables, 1796 B of stack.
+ */
 void rigid_body_steps_step_rk4_jacobian_dense_f32(const rigid_body_steps_constants_f32 *constants,
     const float position[3], const float attitude[4], const float velocity[3], const float omega[3],
     const float force[3], const float moment[3], float time_step, float position_next[3],

@@ -84,6 +84,7 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 119 operations on pairs.
+ * On Cortex-M0+, -O2: 536332 to 560230 instructions, 11014 B of code, 3480 B of stack.
  */
 int rigid_body_steps_setup_f64(double m, double I_xx, double I_yy, double I_zz, double I_xy,
     double I_xz, double I_yz, rigid_body_steps_constants_f64 *constants);
@@ -115,6 +116,8 @@ int rigid_body_steps_setup_f64(double m, double I_xx, double I_yy, double I_zz, 
  *            |q|^2 in 0.999 .. 1.001.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 204 add, 64 sub, 363 mul, 1 div, 4 neg, 1 sqrt.
+ * On Cortex-M0+, -O2: 144618 to 146217 instructions, 2348 B of code, 32 B of tables, 808 B of
+ *            stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -148,6 +151,8 @@ void rigid_body_steps_step_rk4_f64(const rigid_body_steps_constants_f64 *constan
  * Bound: not proved: 3978 operations are more than the 2000 tried.
  * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.
  * Cost: 2322 add, 460 sub, 3223 mul, 1 div, 250 neg, 1 sqrt.
+ * On Cortex-M0+, -O2: 1084207 to 1091065 instructions, 11284 B of code, 38 B of tables, 2432 B of
+ *            stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -158,7 +163,10 @@ void rigid_body_steps_step_rk4_jacobian_f64(const rigid_body_steps_constants_f64
     double position_next[3], double attitude_next[4], double velocity_next[3], double omega_next[3],
     double jacobian[145]);
 
-/* The same, the whole matrix: 247 entries. */
+/* The same, the whole matrix: 247 entries.
+ * On Cortex-M0+, -O2: 1087485 to 1094294 instructions, 11428 B of code, 183 B of tables, 3656 B of
+ *            stack.
+ */
 void rigid_body_steps_step_rk4_jacobian_dense_f64(const rigid_body_steps_constants_f64 *constants,
     const double position[3], const double attitude[4], const double velocity[3],
     const double omega[3], const double force[3], const double moment[3], double time_step,

@@ -59,6 +59,9 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 19 operations on pairs.
+ * On Cortex-M0+, -O2: 137509 to 139739 instructions, 1850 B of code, 128 B of tables, 584 B of
+ *            stack.
+ * On Cortex-M4F, -O2: 3140 instructions, 1656 B of code, 128 B of tables, 516 B of stack.
  */
 int rod_wire_vertical_shaft_setup_f32(float W, float L, float beta, float w, float g,
     rod_wire_vertical_shaft_constants_f32 *constants);
@@ -78,6 +81,8 @@ int rod_wire_vertical_shaft_setup_f32(float W, float L, float beta, float w, flo
  *            samples of the ranges, 65536 searched from the worst); at 8312 hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: T 0.00025 N (seen 0.00024).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 2 to 3 instructions, 8 B of code, 0 B of stack.
+ * On Cortex-M4F, -O2: 3 instructions, 8 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -101,6 +106,8 @@ void rod_wire_vertical_shaft_T_f32(const rod_wire_vertical_shaft_constants_f32 *
  *            samples of the ranges, 65536 searched from the worst); at 8312 hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: A_x 0.00013 N (seen 0.00012).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 2 to 3 instructions, 8 B of code, 0 B of stack.
+ * On Cortex-M4F, -O2: 3 instructions, 8 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -117,6 +124,8 @@ void rod_wire_vertical_shaft_A_x_f32(const rod_wire_vertical_shaft_constants_f32
  *            samples of the ranges, 65536 searched from the worst); at 8312 hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: A_z 0 N (seen 0).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 3 instructions, 8 B of code, 0 B of stack.
+ * On Cortex-M4F, -O2: 3 instructions, 8 B of code, 0 B of stack.
  * Rests on: constant_mass, newton, third_law.
  */
 void rod_wire_vertical_shaft_A_z_f32(const rod_wire_vertical_shaft_constants_f32 *constants,

@@ -63,6 +63,8 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 19 operations on pairs.
+ * On Cortex-M0+, -O2: 380644 to 386637 instructions, 3024 B of code, 464 B of tables, 1096 B of
+ *            stack.
  */
 int rod_wire_vertical_shaft_setup_f64(double W, double L, double beta, double w, double g,
     rod_wire_vertical_shaft_constants_f64 *constants);
@@ -82,6 +84,7 @@ int rod_wire_vertical_shaft_setup_f64(double W, double L, double beta, double w,
  *            samples of the ranges, 65536 searched from the worst); at 8312 hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: T 4.6e-13 N (seen 4.5e-13).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 4 to 5 instructions, 12 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -106,6 +109,7 @@ void rod_wire_vertical_shaft_T_f64(const rod_wire_vertical_shaft_constants_f64 *
  *            samples of the ranges, 65536 searched from the worst); at 8312 hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: A_x 2.3e-13 N (seen 2.3e-13).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 4 to 5 instructions, 12 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -122,6 +126,7 @@ void rod_wire_vertical_shaft_A_x_f64(const rod_wire_vertical_shaft_constants_f64
  *            samples of the ranges, 65536 searched from the worst); at 8312 hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: A_z 0 N (seen 0).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 4 to 5 instructions, 12 B of code, 0 B of stack.
  * Rests on: constant_mass, newton, third_law.
  */
 void rod_wire_vertical_shaft_A_z_f64(const rod_wire_vertical_shaft_constants_f64 *constants,

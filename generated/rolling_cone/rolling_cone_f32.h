@@ -55,6 +55,9 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 27 operations on pairs.
+ * On Cortex-M0+, -O2: 150506 to 153772 instructions, 2070 B of code, 128 B of tables, 672 B of
+ *            stack.
+ * On Cortex-M4F, -O2: 3424 instructions, 1840 B of code, 128 B of tables, 604 B of stack.
  */
 int rolling_cone_setup_f32(float m, float h, float r, float a, float g,
     rolling_cone_constants_f32 *constants);
@@ -72,6 +75,8 @@ int rolling_cone_setup_f32(float m, float h, float r, float a, float g,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 1.1e-05 J (seen
  *            1e-05).
  * Cost: 2 mul.
+ * On Cortex-M0+, -O2: 244 to 251 instructions, 24 B of code, 48 B of stack.
+ * On Cortex-M4F, -O2: 5 instructions, 20 B of code, 0 B of stack.
  * Rests on: A_is_fixed, axes_are_orthonormal, body_triad, body_triad_is_orthonormal,
  *            composed_turns, further_axes_are_right_handed, rigid.
  */
@@ -92,6 +97,8 @@ void rolling_cone_kinetic_energy_f32(const rolling_cone_constants_f32 *constants
  *            samples of the ranges, 65536 searched from the worst); at 8336 hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: x_N 3.6e-07 m (seen 3.4e-07).
  * Cost: 1 add, 2 mul.
+ * On Cortex-M0+, -O2: 289 to 324 instructions, 28 B of code, 48 B of stack.
+ * On Cortex-M4F, -O2: 7 instructions, 28 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -113,6 +120,8 @@ void rolling_cone_x_N_f32(const rolling_cone_constants_f32 *constants, float W, 
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: steady 3e-07 m (seen 2.9e-07).
  * Cost: 1 add, 2 mul.
+ * On Cortex-M0+, -O2: 300 to 350 instructions, 28 B of code, 48 B of stack.
+ * On Cortex-M4F, -O2: 7 instructions, 28 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

@@ -59,6 +59,8 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 27 operations on pairs.
+ * On Cortex-M0+, -O2: 400382 to 416010 instructions, 3466 B of code, 496 B of tables, 1256 B of
+ *            stack.
  */
 int rolling_cone_setup_f64(double m, double h, double r, double a, double g,
     rolling_cone_constants_f64 *constants);
@@ -76,6 +78,7 @@ int rolling_cone_setup_f64(double m, double h, double r, double a, double g,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 1.9e-14 J (seen
  *            1.9e-14).
  * Cost: 2 mul.
+ * On Cortex-M0+, -O2: 586 to 608 instructions, 32 B of code, 80 B of stack.
  * Rests on: A_is_fixed, axes_are_orthonormal, body_triad, body_triad_is_orthonormal,
  *            composed_turns, further_axes_are_right_handed, rigid.
  */
@@ -96,6 +99,7 @@ void rolling_cone_kinetic_energy_f64(const rolling_cone_constants_f64 *constants
  *            samples of the ranges, 65536 searched from the worst); at 8336 hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: x_N 6.7e-16 m (seen 6.4e-16).
  * Cost: 1 add, 2 mul.
+ * On Cortex-M0+, -O2: 689 to 747 instructions, 36 B of code, 80 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -117,6 +121,7 @@ void rolling_cone_x_N_f64(const rolling_cone_constants_f64 *constants, double W,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: steady 5.6e-16 m (seen
  *            5.3e-16).
  * Cost: 1 add, 2 mul.
+ * On Cortex-M0+, -O2: 705 to 777 instructions, 36 B of code, 80 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

@@ -67,6 +67,8 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 18 operations on pairs.
+ * On Cortex-M0+, -O2: 45527 to 47214 instructions, 1660 B of code, 536 B of stack.
+ * On Cortex-M4F, -O2: 822 instructions, 1202 B of code, 408 B of stack.
  */
 int rolling_disc_setup_f32(float m, float r, float n, float g,
     rolling_disc_constants_f32 *constants);
@@ -108,6 +110,8 @@ int rolling_disc_setup_f32(float m, float r, float n, float g,
  *            own within 0.79 ulp.
  * Singular: at lean = pi/2 + k pi, W_rate, s_rate infinite, no number or beyond all measure.
  * Cost: 2 add, 1 sub, 13 mul, 1 div, 1 neg, 2 sin, 2 cos.
+ * On Cortex-M0+, -O2: 9167 to 10661 instructions, 780 B of code, 128 B of stack.
+ * On Cortex-M4F, -O2: 225 to 227 instructions, 616 B of code, 84 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -149,6 +153,8 @@ void rolling_disc_state_rate_f32(const rolling_disc_constants_f32 *constants, fl
  * Singular: at lean = pi/2 + k pi, W_rate, s_rate, jacobian infinite, no number or beyond all
  *            measure.
  * Cost: 7 add, 4 sub, 35 mul, 1 div, 2 neg, 2 sin, 2 cos.
+ * On Cortex-M0+, -O2: 12486 to 13981 instructions, 1112 B of code, 168 B of stack.
+ * On Cortex-M4F, -O2: 278 to 280 instructions, 828 B of code, 84 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -157,7 +163,10 @@ void rolling_disc_state_rate_jacobian_f32(const rolling_disc_constants_f32 *cons
     float lean_dot, float yaw, float W, float s, float *lean_rate, float *lean_dot_rate,
     float *yaw_rate, float *x_rate, float *y_rate, float *W_rate, float *s_rate, float jacobian[16]);
 
-/* The same, the whole matrix: 49 entries. */
+/* The same, the whole matrix: 49 entries.
+ * On Cortex-M0+, -O2: 12540 to 13976 instructions, 1236 B of code, 168 B of stack.
+ * On Cortex-M4F, -O2: 312 to 314 instructions, 912 B of code, 84 B of stack.
+ */
 void rolling_disc_state_rate_jacobian_dense_f32(const rolling_disc_constants_f32 *constants,
     float lean, float lean_dot, float yaw, float W, float s, float *lean_rate, float *lean_dot_rate,
     float *yaw_rate, float *x_rate, float *y_rate, float *W_rate, float *s_rate, float jacobian[49]);
@@ -187,6 +196,8 @@ void rolling_disc_state_rate_jacobian_dense_f32(const rolling_disc_constants_f32
  * Bound: proved, absolute, by rounding alone, on the whole ranges: mass_matrix 3.8e-09 (seen
  *            3.7e-09), damping_matrix 6e-08 (seen 6e-08), stiffness_matrix 6e-08 (seen 6e-08).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 36 instructions, 72 B of code, 12 B of stack.
+ * On Cortex-M4F, -O2: 36 instructions, 132 B of code, 4 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -214,6 +225,8 @@ void rolling_disc_linearised_f32(const rolling_disc_constants_f32 *constants, fl
  * Bound: proved, absolute, by rounding alone, on the whole ranges: steady 4.9e-05 rad/s^2 (seen
  *            3.5e-05); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 2 add, 5 mul, 1 sin, 1 cos.
+ * On Cortex-M0+, -O2: 4258 to 5062 instructions, 632 B of code, 112 B of stack.
+ * On Cortex-M4F, -O2: 108 to 109 instructions, 500 B of code, 44 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -250,6 +263,8 @@ void rolling_disc_steady_f32(const rolling_disc_constants_f32 *constants, float 
  * Bound: proved, absolute, by rounding alone, on the whole ranges: ground 2.7e-05 N (seen
  *            1.7e-05); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 3 add, 3 sub, 17 mul, 1 div, 1 neg, 1 sin, 1 cos.
+ * On Cortex-M0+, -O2: 6423 to 7245 instructions, 808 B of code, 136 B of stack.
+ * On Cortex-M4F, -O2: 133 to 134 instructions, 596 B of code, 52 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -275,6 +290,8 @@ void rolling_disc_ground_f32(const rolling_disc_constants_f32 *constants, float 
  * Bound: proved, absolute, by rounding alone, on the whole ranges: energy_of_all 6.4e-06 J (seen
  *            5.3e-06); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 5 add, 13 mul, 1 sin, 1 cos.
+ * On Cortex-M0+, -O2: 5453 to 6252 instructions, 736 B of code, 112 B of stack.
+ * On Cortex-M4F, -O2: 122 to 123 instructions, 552 B of code, 52 B of stack.
  * Rests on: A_is_G, axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, rigid.
  */
@@ -324,6 +341,8 @@ void rolling_disc_energy_of_all_f32(const rolling_disc_constants_f32 *constants,
  * Singular: where a divisor vanishes, as at lean = 1.551, lean_dot = 3.815, W = 1.724, s = -11.62,
  *            time_step = 0.005105, W_next, s_next infinite, no number or beyond all measure.
  * Cost: 47 add, 8 sub, 87 mul, 4 div, 8 sin, 8 cos.
+ * On Cortex-M0+, -O2: 43237 to 49144 instructions, 1964 B of code, 296 B of stack.
+ * On Cortex-M4F, -O2: 956 to 964 instructions, 1452 B of code, 260 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

@@ -71,6 +71,8 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 18 operations on pairs.
+ * On Cortex-M0+, -O2: 92864 to 100586 instructions, 2686 B of code, 48 B of tables, 1016 B of
+ *            stack.
  */
 int rolling_disc_setup_f64(double m, double r, double n, double g,
     rolling_disc_constants_f64 *constants);
@@ -112,6 +114,7 @@ int rolling_disc_setup_f64(double m, double r, double n, double g,
  *            our own within 0.79 ulp.
  * Singular: at lean = pi/2 + k pi, W_rate, s_rate infinite, no number or beyond all measure.
  * Cost: 2 add, 1 sub, 13 mul, 1 div, 1 neg, 2 sin, 2 cos.
+ * On Cortex-M0+, -O2: 23870 to 27194 instructions, 1248 B of code, 216 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -153,6 +156,7 @@ void rolling_disc_state_rate_f64(const rolling_disc_constants_f64 *constants, do
  * Singular: at lean = pi/2 + k pi, W_rate, s_rate, jacobian infinite, no number or beyond all
  *            measure.
  * Cost: 7 add, 4 sub, 35 mul, 1 div, 2 neg, 2 sin, 2 cos.
+ * On Cortex-M0+, -O2: 31669 to 34939 instructions, 1788 B of code, 280 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -162,7 +166,9 @@ void rolling_disc_state_rate_jacobian_f64(const rolling_disc_constants_f64 *cons
     double *yaw_rate, double *x_rate, double *y_rate, double *W_rate, double *s_rate,
     double jacobian[16]);
 
-/* The same, the whole matrix: 49 entries. */
+/* The same, the whole matrix: 49 entries.
+ * On Cortex-M0+, -O2: 31783 to 35140 instructions, 2216 B of code, 320 B of stack.
+ */
 void rolling_disc_state_rate_jacobian_dense_f64(const rolling_disc_constants_f64 *constants,
     double lean, double lean_dot, double yaw, double W, double s, double *lean_rate,
     double *lean_dot_rate, double *yaw_rate, double *x_rate, double *y_rate, double *W_rate,
@@ -194,6 +200,7 @@ void rolling_disc_state_rate_jacobian_dense_f64(const rolling_disc_constants_f64
  *            6.9e-18), damping_matrix 1.2e-16 (seen 1.1e-16), stiffness_matrix 1.2e-16 (seen
  *            1.1e-16).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 69 to 70 instructions, 140 B of code, 20 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -220,6 +227,7 @@ void rolling_disc_linearised_f64(const rolling_disc_constants_f64 *constants, do
  * Bound: proved, absolute, by rounding alone, on the whole ranges: steady 8.7e-14 rad/s^2 (seen
  *            6.5e-14); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 2 add, 5 mul, 1 sin, 1 cos.
+ * On Cortex-M0+, -O2: 11250 to 13014 instructions, 1024 B of code, 168 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -256,6 +264,7 @@ void rolling_disc_steady_f64(const rolling_disc_constants_f64 *constants, double
  * Bound: proved, absolute, by rounding alone, on the whole ranges: ground 5e-14 N (seen 3.3e-14);
  *            assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 3 add, 3 sub, 17 mul, 1 div, 1 neg, 1 sin, 1 cos.
+ * On Cortex-M0+, -O2: 16067 to 17901 instructions, 1280 B of code, 216 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -281,6 +290,7 @@ void rolling_disc_ground_f64(const rolling_disc_constants_f64 *constants, double
  * Bound: proved, absolute, by rounding alone, on the whole ranges: energy_of_all 1.2e-14 J (seen
  *            1e-14); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 5 add, 13 mul, 1 sin, 1 cos.
+ * On Cortex-M0+, -O2: 14044 to 15813 instructions, 1200 B of code, 200 B of stack.
  * Rests on: A_is_G, axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, rigid.
  */
@@ -330,6 +340,7 @@ void rolling_disc_energy_of_all_f64(const rolling_disc_constants_f64 *constants,
  * Singular: where a divisor vanishes, as at lean = 1.551, lean_dot = 3.815, W = 1.724, s = -11.62,
  *            time_step = 0.005105, W_next, s_next infinite, no number or beyond all measure.
  * Cost: 47 add, 8 sub, 87 mul, 4 div, 8 sin, 8 cos.
+ * On Cortex-M0+, -O2: 109865 to 123215 instructions, 3004 B of code, 552 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

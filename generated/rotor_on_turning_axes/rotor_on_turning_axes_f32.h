@@ -52,6 +52,8 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 3 operations on pairs.
+ * On Cortex-M0+, -O2: 4737 to 4809 instructions, 592 B of code, 176 B of stack.
+ * On Cortex-M4F, -O2: 113 instructions, 344 B of code, 56 B of stack.
  */
 int rotor_on_turning_axes_setup_f32(float A, float C,
     rotor_on_turning_axes_constants_f32 *constants);
@@ -77,6 +79,8 @@ int rotor_on_turning_axes_setup_f32(float A, float C,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 0.00013 N m (seen
  *            0.00012).
  * Cost: 2 add, 2 sub, 7 mul.
+ * On Cortex-M0+, -O2: 1151 to 1192 instructions, 124 B of code, 56 B of stack.
+ * On Cortex-M4F, -O2: 20 instructions, 80 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -101,6 +105,8 @@ void rotor_on_turning_axes_moment_f32(const rotor_on_turning_axes_constants_f32 
  * Bound: proved, absolute, by rounding alone, on the whole ranges: angular_momentum 4.8e-05 kg
  *            m^2/s (seen 4.7e-05).
  * Cost: 1 add, 3 mul.
+ * On Cortex-M0+, -O2: 439 to 480 instructions, 52 B of code, 56 B of stack.
+ * On Cortex-M4F, -O2: 11 instructions, 44 B of code, 0 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void rotor_on_turning_axes_angular_momentum_f32(const rotor_on_turning_axes_constants_f32 *constants,
@@ -133,6 +139,8 @@ void rotor_on_turning_axes_angular_momentum_f32(const rotor_on_turning_axes_cons
  * Bound: proved, absolute, by rounding alone, on the whole ranges: rate_in_axes 4.1e-06 N m (seen
  *            4e-06), rate_absolute 0.00013 N m (seen 0.00012).
  * Cost: 2 add, 2 sub, 7 mul.
+ * On Cortex-M0+, -O2: 1151 to 1200 instructions, 140 B of code, 64 B of stack.
+ * On Cortex-M4F, -O2: 23 instructions, 92 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, rate_seen_from_N, rigid.
  */
 void rotor_on_turning_axes_angular_momentum_rate_f32(const rotor_on_turning_axes_constants_f32 *constants,
@@ -154,6 +162,8 @@ void rotor_on_turning_axes_angular_momentum_rate_f32(const rotor_on_turning_axes
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 0.036 J (seen
  *            0.028).
  * Cost: 3 add, 5 mul.
+ * On Cortex-M0+, -O2: 789 to 861 instructions, 84 B of code, 56 B of stack.
+ * On Cortex-M4F, -O2: 12 instructions, 48 B of code, 0 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void rotor_on_turning_axes_kinetic_energy_f32(const rotor_on_turning_axes_constants_f32 *constants,

@@ -56,6 +56,7 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 3 operations on pairs.
+ * On Cortex-M0+, -O2: 9205 to 9893 instructions, 916 B of code, 328 B of stack.
  */
 int rotor_on_turning_axes_setup_f64(double A, double C,
     rotor_on_turning_axes_constants_f64 *constants);
@@ -81,6 +82,7 @@ int rotor_on_turning_axes_setup_f64(double A, double C,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 2.3e-13 N m (seen
  *            2.3e-13).
  * Cost: 2 add, 2 sub, 7 mul.
+ * On Cortex-M0+, -O2: 2647 to 2712 instructions, 208 B of code, 96 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -105,6 +107,7 @@ void rotor_on_turning_axes_moment_f64(const rotor_on_turning_axes_constants_f64 
  * Bound: proved, absolute, by rounding alone, on the whole ranges: angular_momentum 8.9e-14 kg
  *            m^2/s (seen 8.8e-14).
  * Cost: 1 add, 3 mul.
+ * On Cortex-M0+, -O2: 1002 to 1083 instructions, 68 B of code, 80 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void rotor_on_turning_axes_angular_momentum_f64(const rotor_on_turning_axes_constants_f64 *constants,
@@ -137,6 +140,7 @@ void rotor_on_turning_axes_angular_momentum_f64(const rotor_on_turning_axes_cons
  * Bound: proved, absolute, by rounding alone, on the whole ranges: rate_in_axes 7.5e-15 N m (seen
  *            7.5e-15), rate_absolute 2.3e-13 N m (seen 2.3e-13).
  * Cost: 2 add, 2 sub, 7 mul.
+ * On Cortex-M0+, -O2: 2628 to 2738 instructions, 224 B of code, 104 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, rate_seen_from_N, rigid.
  */
 void rotor_on_turning_axes_angular_momentum_rate_f64(const rotor_on_turning_axes_constants_f64 *constants,
@@ -158,6 +162,7 @@ void rotor_on_turning_axes_angular_momentum_rate_f64(const rotor_on_turning_axes
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 6.7e-11 J (seen
  *            5.2e-11).
  * Cost: 3 add, 5 mul.
+ * On Cortex-M0+, -O2: 1846 to 1925 instructions, 124 B of code, 88 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void rotor_on_turning_axes_kinetic_energy_f64(const rotor_on_turning_axes_constants_f64 *constants,

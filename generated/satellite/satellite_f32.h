@@ -65,6 +65,8 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 24 operations on pairs.
+ * On Cortex-M0+, -O2: 122307 to 124553 instructions, 2528 B of code, 656 B of stack.
+ * On Cortex-M4F, -O2: 2578 to 2583 instructions, 1882 B of code, 444 B of stack.
  */
 int satellite_setup_f32(float I_xx, float I_yy, float I_zz, satellite_constants_f32 *constants);
 
@@ -96,6 +98,8 @@ int satellite_setup_f32(float I_xx, float I_yy, float I_zz, satellite_constants_
  *            1.2e-06), omega_dot 1.2e-05 rad/s^2 (seen 1e-05); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 7 add, 4 sub, 24 mul, 1 neg.
+ * On Cortex-M0+, -O2: 3700 to 3884 instructions, 444 B of code, 104 B of stack.
+ * On Cortex-M4F, -O2: 63 instructions, 248 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -122,6 +126,8 @@ void satellite_state_rate_f32(const satellite_constants_f32 *constants, const fl
  *            |q|^2 in 0.999 .. 1.001.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 71 add, 22 sub, 117 mul, 1 div, 1 sqrt.
+ * On Cortex-M0+, -O2: 20849 to 21431 instructions, 1948 B of code, 184 B of stack.
+ * On Cortex-M4F, -O2: 254 instructions, 1020 B of code, 80 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -151,6 +157,8 @@ void satellite_step_rk4_f32(const satellite_constants_f32 *constants, const floa
  *            1.1.
  * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.
  * Cost: 328 add, 110 sub, 458 mul, 2 div, 12 neg, 1 sqrt.
+ * On Cortex-M0+, -O2: 83938 to 87103 instructions, 8624 B of code, 408 B of stack.
+ * On Cortex-M4F, -O2: 1273 instructions, 5188 B of code, 312 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -159,7 +167,10 @@ void satellite_step_rk4_jacobian_f32(const satellite_constants_f32 *constants,
     const float attitude[4], const float omega[3], const float moment[3], float time_step,
     float attitude_next[4], float omega_next[3], float jacobian[58]);
 
-/* The same, the whole matrix: 70 entries. */
+/* The same, the whole matrix: 70 entries.
+ * On Cortex-M0+, -O2: 85780 to 87260 instructions, 8692 B of code, 408 B of stack.
+ * On Cortex-M4F, -O2: 1286 instructions, 5212 B of code, 312 B of stack.
+ */
 void satellite_step_rk4_jacobian_dense_f32(const satellite_constants_f32 *constants,
     const float attitude[4], const float omega[3], const float moment[3], float time_step,
     float attitude_next[4], float omega_next[3], float jacobian[70]);
@@ -185,6 +196,8 @@ void satellite_step_rk4_jacobian_dense_f32(const satellite_constants_f32 *consta
  *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 304 add, 89 sub, 394 mul, 6 div, 1 sqrt.
+ * On Cortex-M0+, -O2: 74314 to 75905 instructions, 7488 B of code, 416 B of stack.
+ * On Cortex-M4F, -O2: 1114 instructions, 4524 B of code, 304 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -193,7 +206,10 @@ void satellite_step_rk4_tangent_f32(const satellite_constants_f32 *constants,
     const float attitude[4], const float omega[3], const float moment[3], float time_step,
     float attitude_next[4], float omega_next[3], float jacobian[45]);
 
-/* The same, the whole matrix: 54 entries. */
+/* The same, the whole matrix: 54 entries.
+ * On Cortex-M0+, -O2: 73875 to 76053 instructions, 7528 B of code, 416 B of stack.
+ * On Cortex-M4F, -O2: 1124 instructions, 4544 B of code, 304 B of stack.
+ */
 void satellite_step_rk4_tangent_dense_f32(const satellite_constants_f32 *constants,
     const float attitude[4], const float omega[3], const float moment[3], float time_step,
     float attitude_next[4], float omega_next[3], float jacobian[54]);
@@ -220,6 +236,8 @@ void satellite_step_rk4_tangent_dense_f32(const satellite_constants_f32 *constan
  *            1.1.
  * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.
  * Cost: 254 add, 170 sub, 479 mul, 2 div, 3 neg, 1 sqrt.
+ * On Cortex-M0+, -O2: 86706 to 89001 instructions, 8296 B of code, 512 B of stack.
+ * On Cortex-M4F, -O2: 1320 instructions, 5364 B of code, 360 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -228,7 +246,10 @@ void satellite_step_rk4_sensitivity_f32(const satellite_constants_f32 *constants
     const float attitude[4], const float omega[3], const float moment[3], float time_step,
     float attitude_next[4], float omega_next[3], float jacobian[21]);
 
-/* The same, the whole matrix: 21 entries. */
+/* The same, the whole matrix: 21 entries.
+ * On Cortex-M0+, -O2: 87188 to 89091 instructions, 8324 B of code, 536 B of stack.
+ * On Cortex-M4F, -O2: 1321 instructions, 5368 B of code, 360 B of stack.
+ */
 void satellite_step_rk4_sensitivity_dense_f32(const satellite_constants_f32 *constants,
     const float attitude[4], const float omega[3], const float moment[3], float time_step,
     float attitude_next[4], float omega_next[3], float jacobian[21]);
@@ -251,6 +272,8 @@ void satellite_step_rk4_sensitivity_dense_f32(const satellite_constants_f32 *con
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 95 add, 61 sub, 156 mul, 11 div, 3 sqrt, 2 sin, 2 cos, 8 abs, 10 less, 2 power_of_two, 14
  *            select, 1 splitter.
+ * On Cortex-M0+, -O2: 38617 to 39517 instructions, 4160 B of code, 224 B of stack.
+ * On Cortex-M4F, -O2: 601 instructions, 2440 B of code, 108 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -275,6 +298,8 @@ void satellite_step_lie_f32(const satellite_constants_f32 *constants, const floa
  *            1e-07), omega_next 2.5e-05 rad/s (seen 1.7e-06); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 531 add, 100 sub, 585 mul, 54 div, 44 neg, 2 less, 24 select.
+ * On Cortex-M0+, -O2: 135516 to 138214 instructions, 11956 B of code, 496 B of stack.
+ * On Cortex-M4F, -O2: 1603 to 1629 instructions, 6772 B of code, 264 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -298,6 +323,8 @@ void satellite_step_split_f32(const satellite_constants_f32 *constants, const fl
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
  * Bound: not proved: 6491 operations are more than the 2000 tried.
  * Cost: 2396 add, 916 sub, 3419 mul, 22 div, 20 neg, 9 sqrt, 28 abs, 3 less, 3 select.
+ * On Cortex-M0+, -O2: 562900 to 684948 instructions, 2644 B of code, 1104 B of stack.
+ * On Cortex-M4F, -O2: 13877 instructions, 2176 B of code, 1072 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.

@@ -68,6 +68,7 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 24 operations on pairs.
+ * On Cortex-M0+, -O2: 251154 to 261887 instructions, 3762 B of code, 1264 B of stack.
  */
 int satellite_setup_f64(double I_xx, double I_yy, double I_zz, satellite_constants_f64 *constants);
 
@@ -99,6 +100,7 @@ int satellite_setup_f64(double I_xx, double I_yy, double I_zz, satellite_constan
  *            2.2e-15), omega_dot 2.2e-14 rad/s^2 (seen 2.1e-14); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 7 add, 4 sub, 24 mul, 1 neg.
+ * On Cortex-M0+, -O2: 8671 to 8929 instructions, 660 B of code, 200 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -125,6 +127,7 @@ void satellite_state_rate_f64(const satellite_constants_f64 *constants, const do
  *            |q|^2 in 0.999 .. 1.001.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 71 add, 22 sub, 117 mul, 1 div, 1 sqrt.
+ * On Cortex-M0+, -O2: 47823 to 48798 instructions, 2956 B of code, 352 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -154,6 +157,7 @@ void satellite_step_rk4_f64(const satellite_constants_f64 *constants, const doub
  *            1.1.
  * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.
  * Cost: 328 add, 110 sub, 458 mul, 2 div, 12 neg, 1 sqrt.
+ * On Cortex-M0+, -O2: 195575 to 198049 instructions, 13328 B of code, 792 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -162,7 +166,9 @@ void satellite_step_rk4_jacobian_f64(const satellite_constants_f64 *constants,
     const double attitude[4], const double omega[3], const double moment[3], double time_step,
     double attitude_next[4], double omega_next[3], double jacobian[58]);
 
-/* The same, the whole matrix: 70 entries. */
+/* The same, the whole matrix: 70 entries.
+ * On Cortex-M0+, -O2: 196132 to 198049 instructions, 13424 B of code, 792 B of stack.
+ */
 void satellite_step_rk4_jacobian_dense_f64(const satellite_constants_f64 *constants,
     const double attitude[4], const double omega[3], const double moment[3], double time_step,
     double attitude_next[4], double omega_next[3], double jacobian[70]);
@@ -189,6 +195,7 @@ void satellite_step_rk4_jacobian_dense_f64(const satellite_constants_f64 *consta
  *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 304 add, 89 sub, 394 mul, 6 div, 1 sqrt.
+ * On Cortex-M0+, -O2: 169251 to 170990 instructions, 11528 B of code, 808 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -197,7 +204,9 @@ void satellite_step_rk4_tangent_f64(const satellite_constants_f64 *constants,
     const double attitude[4], const double omega[3], const double moment[3], double time_step,
     double attitude_next[4], double omega_next[3], double jacobian[45]);
 
-/* The same, the whole matrix: 54 entries. */
+/* The same, the whole matrix: 54 entries.
+ * On Cortex-M0+, -O2: 169035 to 171318 instructions, 11632 B of code, 808 B of stack.
+ */
 void satellite_step_rk4_tangent_dense_f64(const satellite_constants_f64 *constants,
     const double attitude[4], const double omega[3], const double moment[3], double time_step,
     double attitude_next[4], double omega_next[3], double jacobian[54]);
@@ -224,6 +233,7 @@ void satellite_step_rk4_tangent_dense_f64(const satellite_constants_f64 *constan
  *            1.1.
  * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.
  * Cost: 254 add, 170 sub, 479 mul, 2 div, 3 neg, 1 sqrt.
+ * On Cortex-M0+, -O2: 201566 to 203385 instructions, 12700 B of code, 992 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -232,7 +242,9 @@ void satellite_step_rk4_sensitivity_f64(const satellite_constants_f64 *constants
     const double attitude[4], const double omega[3], const double moment[3], double time_step,
     double attitude_next[4], double omega_next[3], double jacobian[21]);
 
-/* The same, the whole matrix: 21 entries. */
+/* The same, the whole matrix: 21 entries.
+ * On Cortex-M0+, -O2: 201279 to 203569 instructions, 12732 B of code, 1032 B of stack.
+ */
 void satellite_step_rk4_sensitivity_dense_f64(const satellite_constants_f64 *constants,
     const double attitude[4], const double omega[3], const double moment[3], double time_step,
     double attitude_next[4], double omega_next[3], double jacobian[21]);
@@ -255,6 +267,7 @@ void satellite_step_rk4_sensitivity_dense_f64(const satellite_constants_f64 *con
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 95 add, 61 sub, 156 mul, 11 div, 3 sqrt, 2 sin, 2 cos, 8 abs, 10 less, 2 power_of_two, 14
  *            select, 1 splitter.
+ * On Cortex-M0+, -O2: 90071 to 91554 instructions, 6312 B of code, 432 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -279,6 +292,7 @@ void satellite_step_lie_f64(const satellite_constants_f64 *constants, const doub
  *            1.9e-16), omega_next 4.6e-14 rad/s (seen 2.8e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 531 add, 100 sub, 585 mul, 54 div, 44 neg, 2 less, 24 select.
+ * On Cortex-M0+, -O2: 296772 to 299379 instructions, 18344 B of code, 992 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -303,6 +317,7 @@ void satellite_step_split_f64(const satellite_constants_f64 *constants, const do
  *            thin rod).
  * Bound: not proved: 6491 operations are more than the 2000 tried.
  * Cost: 2396 add, 916 sub, 3419 mul, 22 div, 20 neg, 9 sqrt, 28 abs, 3 less, 3 select.
+ * On Cortex-M0+, -O2: 1527613 to 1540644 instructions, 4252 B of code, 2160 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.

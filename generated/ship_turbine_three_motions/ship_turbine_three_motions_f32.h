@@ -71,6 +71,8 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 16 operations on pairs.
+ * On Cortex-M0+, -O2: 40116 to 41658 instructions, 1408 B of code, 440 B of stack.
+ * On Cortex-M4F, -O2: 742 instructions, 1070 B of code, 360 B of stack.
  */
 int ship_turbine_three_motions_setup_f32(float m, float kz, float ws, float a, float b, float g,
     float turn, float pitch, ship_turbine_three_motions_constants_f32 *constants);
@@ -88,6 +90,8 @@ int ship_turbine_three_motions_setup_f32(float m, float kz, float ws, float a, f
  * Bound: proved, absolute, by rounding alone, on the whole ranges: A_roll 0.00013 N (seen
  *            0.00012), B_roll 0.00013 N (seen 0.00012).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 5 to 6 instructions, 12 B of code, 0 B of stack.
+ * On Cortex-M4F, -O2: 5 instructions, 12 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -107,6 +111,8 @@ void ship_turbine_three_motions_roll_case_f32(const ship_turbine_three_motions_c
  * Bound: proved, absolute, by rounding alone, on the whole ranges: A_turn 0.00049 N (seen
  *            0.00049), B_turn 0.00098 N (seen 0.00098).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 5 to 6 instructions, 12 B of code, 0 B of stack.
+ * On Cortex-M4F, -O2: 5 instructions, 12 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -127,6 +133,8 @@ void ship_turbine_three_motions_turn_case_f32(const ship_turbine_three_motions_c
  * Bound: proved, absolute, by rounding alone, on the whole ranges: A_pitch 0.00013 N (seen
  *            0.00012), B_pitch 0.00013 N (seen 0.00012).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 5 to 6 instructions, 12 B of code, 0 B of stack.
+ * On Cortex-M4F, -O2: 5 instructions, 12 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -147,6 +155,8 @@ void ship_turbine_three_motions_pitch_case_f32(const ship_turbine_three_motions_
  * Bound: proved, absolute, by rounding alone, on the whole ranges: pitch_horizontal_couple 0.002 N
  *            m (seen 0.002).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 3 instructions, 8 B of code, 0 B of stack.
+ * On Cortex-M4F, -O2: 3 instructions, 8 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */

@@ -75,6 +75,7 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 16 operations on pairs.
+ * On Cortex-M0+, -O2: 82715 to 88438 instructions, 2242 B of code, 816 B of stack.
  */
 int ship_turbine_three_motions_setup_f64(double m, double kz, double ws, double a, double b,
     double g, double turn, double pitch, ship_turbine_three_motions_constants_f64 *constants);
@@ -92,6 +93,7 @@ int ship_turbine_three_motions_setup_f64(double m, double kz, double ws, double 
  * Bound: proved, absolute, by rounding alone, on the whole ranges: A_roll 2.3e-13 N (seen
  *            2.3e-13), B_roll 2.3e-13 N (seen 2.3e-13).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 10 to 11 instructions, 20 B of code, 12 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -111,6 +113,7 @@ void ship_turbine_three_motions_roll_case_f64(const ship_turbine_three_motions_c
  * Bound: proved, absolute, by rounding alone, on the whole ranges: A_turn 9.1e-13 N (seen
  *            9.1e-13), B_turn 1.9e-12 N (seen 1.8e-12).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 10 to 11 instructions, 20 B of code, 12 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -131,6 +134,7 @@ void ship_turbine_three_motions_turn_case_f64(const ship_turbine_three_motions_c
  * Bound: proved, absolute, by rounding alone, on the whole ranges: A_pitch 2.3e-13 N (seen
  *            2.3e-13), B_pitch 2.3e-13 N (seen 2.3e-13).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 10 to 11 instructions, 20 B of code, 12 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -151,6 +155,7 @@ void ship_turbine_three_motions_pitch_case_f64(const ship_turbine_three_motions_
  * Bound: proved, absolute, by rounding alone, on the whole ranges: pitch_horizontal_couple 3.7e-12
  *            N m (seen 3.6e-12).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 4 to 5 instructions, 12 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */

@@ -61,6 +61,8 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 14 operations on pairs.
+ * On Cortex-M0+, -O2: 43123 to 44459 instructions, 1342 B of code, 488 B of stack.
+ * On Cortex-M4F, -O2: 831 instructions, 994 B of code, 324 B of stack.
  */
 int ship_turbine_turn_port_setup_f32(float m, float k, float p, float v, float R, float a, float b,
     float g, ship_turbine_turn_port_constants_f32 *constants);
@@ -77,6 +79,8 @@ int ship_turbine_turn_port_setup_f32(float m, float k, float p, float v, float R
  * Bound: proved, absolute, by rounding alone, on the whole ranges: R_A 0.00049 N (seen 0.00049),
  *            R_B 0.00025 N (seen 0.00024).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 5 to 6 instructions, 12 B of code, 0 B of stack.
+ * On Cortex-M4F, -O2: 5 instructions, 12 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -96,6 +100,8 @@ void ship_turbine_turn_port_reactions_f32(const ship_turbine_turn_port_constants
  * Bound: proved, absolute, by rounding alone, on the whole ranges: gyro_moment 0.00013 N m (seen
  *            0.00012).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 3 instructions, 8 B of code, 0 B of stack.
+ * On Cortex-M4F, -O2: 3 instructions, 8 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */

@@ -65,6 +65,7 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 14 operations on pairs.
+ * On Cortex-M0+, -O2: 88255 to 93564 instructions, 2168 B of code, 928 B of stack.
  */
 int ship_turbine_turn_port_setup_f64(double m, double k, double p, double v, double R, double a,
     double b, double g, ship_turbine_turn_port_constants_f64 *constants);
@@ -81,6 +82,7 @@ int ship_turbine_turn_port_setup_f64(double m, double k, double p, double v, dou
  * Bound: proved, absolute, by rounding alone, on the whole ranges: R_A 9.1e-13 N (seen 9.1e-13),
  *            R_B 4.6e-13 N (seen 4.5e-13).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 10 to 11 instructions, 20 B of code, 12 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -100,6 +102,7 @@ void ship_turbine_turn_port_reactions_f64(const ship_turbine_turn_port_constants
  * Bound: proved, absolute, by rounding alone, on the whole ranges: gyro_moment 2.3e-13 N m (seen
  *            2.3e-13).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 4 to 5 instructions, 12 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */

@@ -46,6 +46,9 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 7 operations on pairs.
+ * On Cortex-M0+, -O2: 96400 to 97913 instructions, 1530 B of code, 128 B of tables, 520 B of
+ *            stack.
+ * On Cortex-M4F, -O2: 2293 instructions, 1236 B of code, 128 B of tables, 412 B of stack.
  */
 int skewed_disc_setup_f32(float m, float r, float skew, float b,
     skewed_disc_constants_f32 *constants);
@@ -67,6 +70,8 @@ int skewed_disc_setup_f32(float m, float r, float skew, float b,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: M_x 0 N m (seen 0), M_y 0.00061
  *            N m (seen 0.0006), M_z 0 N m (seen 0).
  * Cost: 2 mul.
+ * On Cortex-M0+, -O2: 248 to 255 instructions, 36 B of code, 48 B of stack.
+ * On Cortex-M4F, -O2: 8 instructions, 24 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -87,6 +92,8 @@ void skewed_disc_M_f32(const skewed_disc_constants_f32 *constants, float w, floa
  * Bound: proved, absolute, by rounding alone, on the whole ranges: bearing_force 0.0017 N (seen
  *            0.0016).
  * Cost: 2 mul.
+ * On Cortex-M0+, -O2: 244 to 251 instructions, 24 B of code, 48 B of stack.
+ * On Cortex-M4F, -O2: 5 instructions, 20 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

@@ -50,6 +50,8 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 7 operations on pairs.
+ * On Cortex-M0+, -O2: 287119 to 297943 instructions, 2390 B of code, 448 B of tables, 952 B of
+ *            stack.
  */
 int skewed_disc_setup_f64(double m, double r, double skew, double b,
     skewed_disc_constants_f64 *constants);
@@ -71,6 +73,7 @@ int skewed_disc_setup_f64(double m, double r, double skew, double b,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: M_x 0 N m (seen 0), M_y 1.2e-12
  *            N m (seen 1.1e-12), M_z 0 N m (seen 0).
  * Cost: 2 mul.
+ * On Cortex-M0+, -O2: 594 to 616 instructions, 48 B of code, 80 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -91,6 +94,7 @@ void skewed_disc_M_f64(const skewed_disc_constants_f64 *constants, double w, dou
  * Bound: proved, absolute, by rounding alone, on the whole ranges: bearing_force 3.1e-12 N (seen
  *            3e-12).
  * Cost: 2 mul.
+ * On Cortex-M0+, -O2: 586 to 614 instructions, 32 B of code, 80 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

@@ -59,6 +59,8 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 23 operations on pairs.
+ * On Cortex-M0+, -O2: 52187 to 53555 instructions, 1590 B of code, 536 B of stack.
+ * On Cortex-M4F, -O2: 967 instructions, 1290 B of code, 448 B of stack.
  */
 int sleeping_top_setup_f32(float m, float r, float l, float n, float g,
     sleeping_top_constants_f32 *constants);
@@ -84,6 +86,8 @@ int sleeping_top_setup_f32(float m, float r, float l, float n, float g,
  *            1.2e-10), damping_matrix 7.5e-09 (seen 7.5e-09), stiffness_matrix 1.5e-08 (seen
  *            1.5e-08).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 21 to 22 instructions, 44 B of code, 12 B of stack.
+ * On Cortex-M4F, -O2: 21 instructions, 68 B of code, 4 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -113,6 +117,8 @@ void sleeping_top_linearised_f32(const sleeping_top_constants_f32 *constants, fl
  *            our own within 0.79 ulp.
  * Singular: at beta = pi/2 + k pi, alpha_ddot infinite, no number or beyond all measure.
  * Cost: 4 sub, 9 mul, 1 div, 2 sin, 2 cos.
+ * On Cortex-M0+, -O2: 8908 to 9070 instructions, 724 B of code, 128 B of stack.
+ * On Cortex-M4F, -O2: 213 instructions, 568 B of code, 60 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -141,6 +147,8 @@ void sleeping_top_accelerations_f32(const sleeping_top_constants_f32 *constants,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: energy 2.1e-06 J (seen 2e-06);
  *            assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 3 add, 6 mul, 2 cos.
+ * On Cortex-M0+, -O2: 8041 to 8188 instructions, 656 B of code, 120 B of stack.
+ * On Cortex-M4F, -O2: 203 instructions, 528 B of code, 60 B of stack.
  * Rests on: A_is_fixed, axes_are_orthonormal, body_triad, body_triad_is_orthonormal,
  *            composed_turns, further_axes_are_right_handed, rigid.
  */
@@ -170,6 +178,8 @@ void sleeping_top_energy_f32(const sleeping_top_constants_f32 *constants, float 
  * Singular: at beta = pi/2 + k pi, alpha_next, alpha_dot_next, beta_next, beta_dot_next infinite,
  *            no number or beyond all measure.
  * Cost: 28 add, 16 sub, 64 mul, 4 div, 8 sin, 8 cos.
+ * On Cortex-M0+, -O2: 40261 to 40926 instructions, 1656 B of code, 272 B of stack.
+ * On Cortex-M4F, -O2: 889 instructions, 1184 B of code, 212 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

@@ -62,6 +62,7 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 23 operations on pairs.
+ * On Cortex-M0+, -O2: 107605 to 113780 instructions, 2646 B of code, 1016 B of stack.
  */
 int sleeping_top_setup_f64(double m, double r, double l, double n, double g,
     sleeping_top_constants_f64 *constants);
@@ -87,6 +88,7 @@ int sleeping_top_setup_f64(double m, double r, double l, double n, double g,
  *            2.2e-19), damping_matrix 1.4e-17 (seen 1.4e-17), stiffness_matrix 2.8e-17 (seen
  *            2.8e-17).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 43 instructions, 88 B of code, 20 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -116,6 +118,7 @@ void sleeping_top_linearised_f64(const sleeping_top_constants_f64 *constants, do
  *            our own within 0.79 ulp.
  * Singular: at beta = pi/2 + k pi, alpha_ddot infinite, no number or beyond all measure.
  * Cost: 4 sub, 9 mul, 1 div, 2 sin, 2 cos.
+ * On Cortex-M0+, -O2: 23004 to 23461 instructions, 1156 B of code, 208 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -144,6 +147,7 @@ void sleeping_top_accelerations_f64(const sleeping_top_constants_f64 *constants,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: energy 3.8e-15 J (seen
  *            3.7e-15); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 3 add, 6 mul, 2 cos.
+ * On Cortex-M0+, -O2: 21284 to 21615 instructions, 1076 B of code, 200 B of stack.
  * Rests on: A_is_fixed, axes_are_orthonormal, body_triad, body_triad_is_orthonormal,
  *            composed_turns, further_axes_are_right_handed, rigid.
  */
@@ -173,6 +177,7 @@ void sleeping_top_energy_f64(const sleeping_top_constants_f64 *constants, double
  * Singular: at beta = pi/2 + k pi, alpha_next, alpha_dot_next, beta_next, beta_dot_next infinite,
  *            no number or beyond all measure.
  * Cost: 28 add, 16 sub, 64 mul, 4 div, 8 sin, 8 cos.
+ * On Cortex-M0+, -O2: 103069 to 104131 instructions, 2576 B of code, 472 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

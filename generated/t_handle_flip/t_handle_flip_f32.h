@@ -70,6 +70,8 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 26 operations on pairs.
+ * On Cortex-M0+, -O2: 145103 to 148070 instructions, 2816 B of code, 768 B of stack.
+ * On Cortex-M4F, -O2: 3529 instructions, 2492 B of code, 652 B of stack.
  */
 int t_handle_flip_setup_f32(float I_xx, float I_yy, float I_zz,
     t_handle_flip_constants_f32 *constants);
@@ -86,6 +88,8 @@ int t_handle_flip_setup_f32(float I_xx, float I_yy, float I_zz,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 2.3e-05 J (seen
  *            1.7e-05).
  * Cost: 2 add, 6 mul.
+ * On Cortex-M0+, -O2: 845 to 890 instructions, 88 B of code, 56 B of stack.
+ * On Cortex-M4F, -O2: 16 instructions, 64 B of code, 0 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void t_handle_flip_kinetic_energy_f32(const t_handle_flip_constants_f32 *constants,
@@ -105,6 +109,8 @@ void t_handle_flip_kinetic_energy_f32(const t_handle_flip_constants_f32 *constan
  * Bound: proved, absolute, by rounding alone, on the whole ranges: angular_momentum 2.4e-07 kg
  *            m^2/s (seen 2.4e-07).
  * Cost: 3 mul.
+ * On Cortex-M0+, -O2: 370 to 379 instructions, 44 B of code, 56 B of stack.
+ * On Cortex-M4F, -O2: 13 instructions, 52 B of code, 0 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void t_handle_flip_angular_momentum_f32(const t_handle_flip_constants_f32 *constants,
@@ -124,6 +130,8 @@ void t_handle_flip_angular_momentum_f32(const t_handle_flip_constants_f32 *const
  * Bound: not proved: a divisor may vanish for all that ranges tell, in set-up.
  * Cost: 170 add, 50 sub, 387 mul, 121 div, 1 neg, 29 sqrt, 2 sin, 2 cos, 14 abs, 2 at_most, 1
  *            both, 13 less, 2 power_of_two, 35 select.
+ * On Cortex-M0+, -O2: 112408 to 121470 instructions, 8288 B of code, 456 B of stack.
+ * On Cortex-M4F, -O2: 1372 to 1388 instructions, 6980 B of code, 372 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.

@@ -74,6 +74,7 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 26 operations on pairs.
+ * On Cortex-M0+, -O2: 300962 to 307610 instructions, 4642 B of code, 1488 B of stack.
  */
 int t_handle_flip_setup_f64(double I_xx, double I_yy, double I_zz,
     t_handle_flip_constants_f64 *constants);
@@ -90,6 +91,7 @@ int t_handle_flip_setup_f64(double I_xx, double I_yy, double I_zz,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 4.3e-14 J (seen
  *            3.3e-14).
  * Cost: 2 add, 6 mul.
+ * On Cortex-M0+, -O2: 2015 to 2076 instructions, 140 B of code, 104 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void t_handle_flip_kinetic_energy_f64(const t_handle_flip_constants_f64 *constants,
@@ -109,6 +111,7 @@ void t_handle_flip_kinetic_energy_f64(const t_handle_flip_constants_f64 *constan
  * Bound: proved, absolute, by rounding alone, on the whole ranges: angular_momentum 4.5e-16 kg
  *            m^2/s (seen 4.4e-16).
  * Cost: 3 mul.
+ * On Cortex-M0+, -O2: 903 to 932 instructions, 88 B of code, 96 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void t_handle_flip_angular_momentum_f64(const t_handle_flip_constants_f64 *constants,
@@ -128,6 +131,7 @@ void t_handle_flip_angular_momentum_f64(const t_handle_flip_constants_f64 *const
  * Bound: not proved: a divisor may vanish for all that ranges tell, in set-up.
  * Cost: 170 add, 50 sub, 387 mul, 121 div, 1 neg, 29 sqrt, 2 sin, 2 cos, 14 abs, 2 at_most, 1
  *            both, 13 less, 2 power_of_two, 35 select.
+ * On Cortex-M0+, -O2: 238828 to 264756 instructions, 12820 B of code, 880 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.

@@ -54,6 +54,9 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 11 operations on pairs.
+ * On Cortex-M0+, -O2: 96798 to 100500 instructions, 1458 B of code, 128 B of tables, 488 B of
+ *            stack.
+ * On Cortex-M4F, -O2: 2292 to 2306 instructions, 1224 B of code, 128 B of tables, 396 B of stack.
  */
 int top_steady_precession_setup_f32(float r, float l, float theta, float n, float g,
     top_steady_precession_constants_f32 *constants);
@@ -70,6 +73,8 @@ int top_steady_precession_setup_f32(float r, float l, float theta, float n, floa
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: steady 2.5e-05 (seen 2.2e-05).
  * Cost: 2 sub, 2 mul.
+ * On Cortex-M0+, -O2: 377 to 443 instructions, 40 B of code, 48 B of stack.
+ * On Cortex-M4F, -O2: 9 instructions, 36 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

@@ -57,6 +57,8 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 11 operations on pairs.
+ * On Cortex-M0+, -O2: 288620 to 307278 instructions, 2302 B of code, 448 B of tables, 896 B of
+ *            stack.
  */
 int top_steady_precession_setup_f64(double r, double l, double theta, double n, double g,
     top_steady_precession_constants_f64 *constants);
@@ -73,6 +75,7 @@ int top_steady_precession_setup_f64(double r, double l, double theta, double n, 
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: steady 4.6e-14 (seen 4.1e-14).
  * Cost: 2 sub, 2 mul.
+ * On Cortex-M0+, -O2: 876 to 964 instructions, 56 B of code, 80 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.

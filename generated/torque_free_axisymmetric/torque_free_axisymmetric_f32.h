@@ -57,6 +57,8 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 4 operations on pairs.
+ * On Cortex-M0+, -O2: 15049 to 15520 instructions, 964 B of code, 304 B of stack.
+ * On Cortex-M4F, -O2: 311 instructions, 562 B of code, 192 B of stack.
  */
 int torque_free_axisymmetric_setup_f32(float A, float C,
     torque_free_axisymmetric_constants_f32 *constants);
@@ -76,6 +78,8 @@ int torque_free_axisymmetric_setup_f32(float A, float C,
  *            4.7e-06).
  * Singular: at w_x = w_y = 0, precession infinite, no number or beyond all measure.
  * Cost: 3 add, 7 mul, 1 div, 3 sqrt.
+ * On Cortex-M0+, -O2: 2384 to 2452 instructions, 136 B of code, 64 B of stack.
+ * On Cortex-M4F, -O2: 32 instructions, 188 B of code, 32 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void torque_free_axisymmetric_precession_f32(const torque_free_axisymmetric_constants_f32 *constants,
@@ -93,6 +97,8 @@ void torque_free_axisymmetric_precession_f32(const torque_free_axisymmetric_cons
  * Bound: proved, absolute, by rounding alone, on the whole ranges: body_rate 4.5e-07 rad/s (seen
  *            4.5e-07).
  * Cost: 1 mul.
+ * On Cortex-M0+, -O2: 123 to 126 instructions, 16 B of code, 40 B of stack.
+ * On Cortex-M4F, -O2: 4 instructions, 16 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -114,6 +120,8 @@ void torque_free_axisymmetric_body_rate_f32(const torque_free_axisymmetric_const
  *            7.6e-08).
  * Singular: at w_z = 0, tan_theta infinite, no number or beyond all measure.
  * Cost: 1 add, 5 mul, 1 div, 1 sqrt.
+ * On Cortex-M0+, -O2: 1369 to 1425 instructions, 96 B of code, 64 B of stack.
+ * On Cortex-M4F, -O2: 15 instructions, 104 B of code, 24 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void torque_free_axisymmetric_tan_theta_f32(const torque_free_axisymmetric_constants_f32 *constants,
@@ -131,6 +139,8 @@ void torque_free_axisymmetric_tan_theta_f32(const torque_free_axisymmetric_const
  * Bound: proved, absolute, by rounding alone, on the whole ranges: tan_beta 6e-08 (seen 5.6e-08).
  * Singular: at w_z = 0, tan_beta infinite, no number or beyond all measure.
  * Cost: 1 add, 2 mul, 1 div, 1 sqrt.
+ * On Cortex-M0+, -O2: 999 to 1045 instructions, 48 B of code, 64 B of stack.
+ * On Cortex-M4F, -O2: 10 instructions, 72 B of code, 16 B of stack.
  */
 void torque_free_axisymmetric_tan_beta_f32(float w_x, float w_y, float w_z, float *tan_beta);
 
@@ -147,6 +157,8 @@ void torque_free_axisymmetric_tan_beta_f32(float w_x, float w_y, float w_z, floa
  * Bound: proved, absolute, by rounding alone, on the whole ranges: L 1.6e-06 kg m^2/s (seen
  *            1.4e-06).
  * Cost: 2 add, 6 mul, 1 sqrt.
+ * On Cortex-M0+, -O2: 1190 to 1234 instructions, 104 B of code, 64 B of stack.
+ * On Cortex-M4F, -O2: 16 instructions, 84 B of code, 16 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void torque_free_axisymmetric_L_f32(const torque_free_axisymmetric_constants_f32 *constants,

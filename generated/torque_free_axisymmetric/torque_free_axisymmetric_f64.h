@@ -61,6 +61,7 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 4 operations on pairs.
+ * On Cortex-M0+, -O2: 28576 to 30101 instructions, 1504 B of code, 568 B of stack.
  */
 int torque_free_axisymmetric_setup_f64(double A, double C,
     torque_free_axisymmetric_constants_f64 *constants);
@@ -80,6 +81,7 @@ int torque_free_axisymmetric_setup_f64(double A, double C,
  *            8.9e-15).
  * Singular: at w_x = w_y = 0, precession infinite, no number or beyond all measure.
  * Cost: 3 add, 7 mul, 1 div, 3 sqrt.
+ * On Cortex-M0+, -O2: 5988 to 6310 instructions, 196 B of code, 104 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void torque_free_axisymmetric_precession_f64(const torque_free_axisymmetric_constants_f64 *constants,
@@ -97,6 +99,7 @@ void torque_free_axisymmetric_precession_f64(const torque_free_axisymmetric_cons
  * Bound: proved, absolute, by rounding alone, on the whole ranges: body_rate 1.3e-15 rad/s (seen
  *            8.3e-16).
  * Cost: 1 mul.
+ * On Cortex-M0+, -O2: 299 to 305 instructions, 20 B of code, 72 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -118,6 +121,7 @@ void torque_free_axisymmetric_body_rate_f64(const torque_free_axisymmetric_const
  *            1.4e-16).
  * Singular: at w_z = 0, tan_theta infinite, no number or beyond all measure.
  * Cost: 1 add, 5 mul, 1 div, 1 sqrt.
+ * On Cortex-M0+, -O2: 3197 to 3422 instructions, 128 B of code, 88 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void torque_free_axisymmetric_tan_theta_f64(const torque_free_axisymmetric_constants_f64 *constants,
@@ -135,6 +139,7 @@ void torque_free_axisymmetric_tan_theta_f64(const torque_free_axisymmetric_const
  * Bound: proved, absolute, by rounding alone, on the whole ranges: tan_beta 1.3e-16 (seen 1e-16).
  * Singular: at w_z = 0, tan_beta infinite, no number or beyond all measure.
  * Cost: 1 add, 2 mul, 1 div, 1 sqrt.
+ * On Cortex-M0+, -O2: 2270 to 2486 instructions, 64 B of code, 88 B of stack.
  */
 void torque_free_axisymmetric_tan_beta_f64(double w_x, double w_y, double w_z, double *tan_beta);
 
@@ -151,6 +156,7 @@ void torque_free_axisymmetric_tan_beta_f64(double w_x, double w_y, double w_z, d
  * Bound: proved, absolute, by rounding alone, on the whole ranges: L 3e-15 kg m^2/s (seen
  *            2.6e-15).
  * Cost: 2 add, 6 mul, 1 sqrt.
+ * On Cortex-M0+, -O2: 3011 to 3186 instructions, 148 B of code, 96 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void torque_free_axisymmetric_L_f64(const torque_free_axisymmetric_constants_f64 *constants,

@@ -117,6 +117,8 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 349 operations on pairs.
+ * On Cortex-M0+, -O2: 886234 to 895428 instructions, 19292 B of code, 5048 B of stack.
+ * On Cortex-M4F, -O2: 18728 to 18730 instructions, 9784 B of code, 4924 B of stack.
  */
 int tumbling_body_setup_f32(float I_xx, float I_yy, float I_zz,
     tumbling_body_constants_f32 *constants);
@@ -133,6 +135,8 @@ int tumbling_body_setup_f32(float I_xx, float I_yy, float I_zz,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 5.4e-05 J (seen
  *            4.4e-05).
  * Cost: 2 add, 6 mul.
+ * On Cortex-M0+, -O2: 834 to 892 instructions, 88 B of code, 56 B of stack.
+ * On Cortex-M4F, -O2: 16 instructions, 64 B of code, 0 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void tumbling_body_kinetic_energy_f32(const tumbling_body_constants_f32 *constants,
@@ -152,6 +156,8 @@ void tumbling_body_kinetic_energy_f32(const tumbling_body_constants_f32 *constan
  * Bound: not proved: a divisor may vanish for all that ranges tell, in set-up.
  * Cost: 170 add, 50 sub, 387 mul, 121 div, 1 neg, 29 sqrt, 2 sin, 2 cos, 14 abs, 2 at_most, 1
  *            both, 13 less, 2 power_of_two, 35 select.
+ * On Cortex-M0+, -O2: 111871 to 119957 instructions, 8288 B of code, 456 B of stack.
+ * On Cortex-M4F, -O2: 1372 to 1388 instructions, 6980 B of code, 372 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -170,6 +176,8 @@ void tumbling_body_flow_exact_f32(const tumbling_body_constants_f32 *constants,
  *            plan, thin rod).
  * Bound: not proved: a divisor may vanish for all that ranges tell.
  * Cost: 43 add, 21 sub, 101 mul, 6 div, 1 abs, 1 less, 1 select, 1 splitter.
+ * On Cortex-M0+, -O2: 19086 to 19581 instructions, 1712 B of code, 104 B of stack.
+ * On Cortex-M4F, -O2: 237 instructions, 952 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -190,6 +198,8 @@ void tumbling_body_plan_dmv_f32(const tumbling_body_constants_f32 *constants, co
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
  * Bound: not proved: its plan, of another function, has no enclosure here.
  * Cost: 207 add, 69 sub, 372 mul, 22 div, 1 neg, 18 sqrt, 16 abs, 16 at_most.
+ * On Cortex-M0+, -O2: 19966 to 23883 instructions, 1808 B of code, 168 B of stack.
+ * On Cortex-M4F, -O2: 247 to 285 instructions, 1232 B of code, 144 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -211,6 +221,8 @@ void tumbling_body_step_dmv_f32(const float plan[13], const float attitude[4], c
  *            1e-07), omega_next 3.3e-06 rad/s (seen 1e-06); assumed: quaternions given with |q|^2
  *            in 0.999 .. 1.001.
  * Cost: 82 add, 15 sub, 100 mul, 9 div, 9 neg, 2 less, 18 select.
+ * On Cortex-M0+, -O2: 22805 to 23327 instructions, 2368 B of code, 152 B of stack.
+ * On Cortex-M4F, -O2: 287 to 316 instructions, 1404 B of code, 60 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -233,6 +245,8 @@ void tumbling_body_step_split2_f32(const tumbling_body_constants_f32 *constants,
  *            1.1e-07), omega_next 9.9e-06 rad/s (seen 1.1e-06); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 292 add, 45 sub, 306 mul, 29 div, 29 neg, 2 less, 18 select.
+ * On Cortex-M0+, -O2: 71759 to 73022 instructions, 6456 B of code, 352 B of stack.
+ * On Cortex-M4F, -O2: 778 to 807 instructions, 3396 B of code, 104 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -255,6 +269,8 @@ void tumbling_body_step_split_f32(const tumbling_body_constants_f32 *constants,
  *            1.2e-07), omega_next 3e-05 rad/s (seen 1.3e-06); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 460 add, 69 sub, 470 mul, 45 div, 45 neg, 2 less, 18 select.
+ * On Cortex-M0+, -O2: 110674 to 112578 instructions, 9684 B of code, 512 B of stack.
+ * On Cortex-M4F, -O2: 1162 to 1191 instructions, 4948 B of code, 120 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -281,6 +297,8 @@ void tumbling_body_step_split6_f32(const tumbling_body_constants_f32 *constants,
  *            |q|^2 in 0.999 .. 1.001.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 63 add, 18 sub, 111 mul, 1 div, 1 sqrt.
+ * On Cortex-M0+, -O2: 19231 to 19640 instructions, 1816 B of code, 168 B of stack.
+ * On Cortex-M4F, -O2: 226 instructions, 920 B of code, 80 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -309,6 +327,8 @@ void tumbling_body_step_rk4_f32(const tumbling_body_constants_f32 *constants,
  *            1.1.
  * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.
  * Cost: 265 add, 98 sub, 398 mul, 2 div, 9 neg, 1 sqrt.
+ * On Cortex-M0+, -O2: 73598 to 74616 instructions, 7388 B of code, 400 B of stack.
+ * On Cortex-M4F, -O2: 1046 instructions, 4272 B of code, 248 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -317,7 +337,10 @@ void tumbling_body_step_rk4_jacobian_f32(const tumbling_body_constants_f32 *cons
     const float attitude[4], const float omega[3], float time_step, float attitude_next[4],
     float omega_next[3], float jacobian[37]);
 
-/* The same, the whole matrix: 49 entries. */
+/* The same, the whole matrix: 49 entries.
+ * On Cortex-M0+, -O2: 73690 to 74773 instructions, 7440 B of code, 400 B of stack.
+ * On Cortex-M4F, -O2: 1059 instructions, 4300 B of code, 248 B of stack.
+ */
 void tumbling_body_step_rk4_jacobian_dense_f32(const tumbling_body_constants_f32 *constants,
     const float attitude[4], const float omega[3], float time_step, float attitude_next[4],
     float omega_next[3], float jacobian[49]);
@@ -339,6 +362,8 @@ void tumbling_body_step_rk4_jacobian_dense_f32(const tumbling_body_constants_f32
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 87 add, 57 sub, 150 mul, 11 div, 3 sqrt, 2 sin, 2 cos, 8 abs, 10 less, 2 power_of_two, 14
  *            select, 1 splitter.
+ * On Cortex-M0+, -O2: 37116 to 37858 instructions, 4016 B of code, 216 B of stack.
+ * On Cortex-M4F, -O2: 579 instructions, 2344 B of code, 100 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -361,6 +386,8 @@ void tumbling_body_step_lie_f32(const tumbling_body_constants_f32 *constants,
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
  * Bound: not proved: 6457 operations are more than the 2000 tried.
  * Cost: 2394 add, 915 sub, 3416 mul, 22 div, 1 neg, 9 sqrt, 28 abs, 3 less, 3 select.
+ * On Cortex-M0+, -O2: 592501 to 682145 instructions, 2528 B of code, 1104 B of stack.
+ * On Cortex-M4F, -O2: 13867 instructions, 2128 B of code, 1072 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.

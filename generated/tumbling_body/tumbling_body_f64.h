@@ -121,6 +121,8 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 349 operations on pairs.
+ * On Cortex-M0+, -O2: 1867725 to 1907606 instructions, 37346 B of code, 144 B of tables, 10128 B
+ *            of stack.
  */
 int tumbling_body_setup_f64(double I_xx, double I_yy, double I_zz,
     tumbling_body_constants_f64 *constants);
@@ -137,6 +139,7 @@ int tumbling_body_setup_f64(double I_xx, double I_yy, double I_zz,
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 1.1e-13 J (seen
  *            8.2e-14).
  * Cost: 2 add, 6 mul.
+ * On Cortex-M0+, -O2: 2001 to 2070 instructions, 140 B of code, 104 B of stack.
  * Rests on: body_triad, body_triad_is_orthonormal, rigid.
  */
 void tumbling_body_kinetic_energy_f64(const tumbling_body_constants_f64 *constants,
@@ -156,6 +159,7 @@ void tumbling_body_kinetic_energy_f64(const tumbling_body_constants_f64 *constan
  * Bound: not proved: a divisor may vanish for all that ranges tell, in set-up.
  * Cost: 170 add, 50 sub, 387 mul, 121 div, 1 neg, 29 sqrt, 2 sin, 2 cos, 14 abs, 2 at_most, 1
  *            both, 13 less, 2 power_of_two, 35 select.
+ * On Cortex-M0+, -O2: 237575 to 263534 instructions, 12820 B of code, 880 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -173,6 +177,7 @@ void tumbling_body_flow_exact_f64(const tumbling_body_constants_f64 *constants,
  *            samples of the ranges, 65536 searched from the worst); at 8270 hard samples no more.
  * Bound: not proved: a divisor may vanish for all that ranges tell.
  * Cost: 43 add, 21 sub, 101 mul, 6 div, 1 abs, 1 less, 1 select, 1 splitter.
+ * On Cortex-M0+, -O2: 42869 to 43498 instructions, 2816 B of code, 192 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -193,6 +198,7 @@ void tumbling_body_plan_dmv_f64(const tumbling_body_constants_f64 *constants, co
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
  * Bound: not proved: its plan, of another function, has no enclosure here.
  * Cost: 207 add, 69 sub, 372 mul, 22 div, 1 neg, 18 sqrt, 16 abs, 16 at_most.
+ * On Cortex-M0+, -O2: 45015 to 69663 instructions, 2756 B of code, 304 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -215,6 +221,7 @@ void tumbling_body_step_dmv_f64(const double plan[13], const double attitude[4],
  *            1.7e-16), omega_next 6.4e-15 rad/s (seen 1.8e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 82 add, 15 sub, 100 mul, 9 div, 9 neg, 2 less, 18 select.
+ * On Cortex-M0+, -O2: 49751 to 50501 instructions, 3608 B of code, 296 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -238,6 +245,7 @@ void tumbling_body_step_split2_f64(const tumbling_body_constants_f64 *constants,
  *            2e-16), omega_next 1.9e-14 rad/s (seen 1.9e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 292 add, 45 sub, 306 mul, 29 div, 29 neg, 2 less, 18 select.
+ * On Cortex-M0+, -O2: 156529 to 158352 instructions, 9936 B of code, 688 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -261,6 +269,7 @@ void tumbling_body_step_split_f64(const tumbling_body_constants_f64 *constants,
  *            2e-16), omega_next 5.6e-14 rad/s (seen 2.1e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 460 add, 69 sub, 470 mul, 45 div, 45 neg, 2 less, 18 select.
+ * On Cortex-M0+, -O2: 240470 to 244063 instructions, 14972 B of code, 1008 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -287,6 +296,7 @@ void tumbling_body_step_split6_f64(const tumbling_body_constants_f64 *constants,
  *            |q|^2 in 0.999 .. 1.001.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 63 add, 18 sub, 111 mul, 1 div, 1 sqrt.
+ * On Cortex-M0+, -O2: 44274 to 45132 instructions, 2752 B of code, 328 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -315,6 +325,7 @@ void tumbling_body_step_rk4_f64(const tumbling_body_constants_f64 *constants,
  *            1.1.
  * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.
  * Cost: 265 add, 98 sub, 398 mul, 2 div, 9 neg, 1 sqrt.
+ * On Cortex-M0+, -O2: 168270 to 169703 instructions, 11396 B of code, 792 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -323,7 +334,9 @@ void tumbling_body_step_rk4_jacobian_f64(const tumbling_body_constants_f64 *cons
     const double attitude[4], const double omega[3], double time_step, double attitude_next[4],
     double omega_next[3], double jacobian[37]);
 
-/* The same, the whole matrix: 49 entries. */
+/* The same, the whole matrix: 49 entries.
+ * On Cortex-M0+, -O2: 168395 to 169820 instructions, 11492 B of code, 792 B of stack.
+ */
 void tumbling_body_step_rk4_jacobian_dense_f64(const tumbling_body_constants_f64 *constants,
     const double attitude[4], const double omega[3], double time_step, double attitude_next[4],
     double omega_next[3], double jacobian[49]);
@@ -345,6 +358,7 @@ void tumbling_body_step_rk4_jacobian_dense_f64(const tumbling_body_constants_f64
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 87 add, 57 sub, 150 mul, 11 div, 3 sqrt, 2 sin, 2 cos, 8 abs, 10 less, 2 power_of_two, 14
  *            select, 1 splitter.
+ * On Cortex-M0+, -O2: 86712 to 88351 instructions, 6108 B of code, 424 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -367,6 +381,7 @@ void tumbling_body_step_lie_f64(const tumbling_body_constants_f64 *constants,
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
  * Bound: not proved: 6457 operations are more than the 2000 tried.
  * Cost: 2394 add, 915 sub, 3416 mul, 22 div, 1 neg, 9 sqrt, 28 abs, 3 less, 3 select.
+ * On Cortex-M0+, -O2: 1525465 to 1537414 instructions, 4148 B of code, 2152 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.

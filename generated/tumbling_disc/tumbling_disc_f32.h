@@ -52,6 +52,8 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 6 operations on pairs.
+ * On Cortex-M0+, -O2: 40470 to 41378 instructions, 1112 B of code, 376 B of stack.
+ * On Cortex-M4F, -O2: 882 instructions, 686 B of code, 172 B of stack.
  */
 int tumbling_disc_setup_f32(float A, float C, tumbling_disc_constants_f32 *constants);
 
@@ -69,6 +71,8 @@ int tumbling_disc_setup_f32(float A, float C, tumbling_disc_constants_f32 *const
  * Bound: not proved: a divisor may vanish for all that ranges tell.
  * Cost: 13 add, 8 sub, 47 mul, 9 div, 1 neg, 1 sqrt, 2 sin, 2 cos, 6 abs, 5 less, 1 power_of_two,
  *            6 select.
+ * On Cortex-M0+, -O2: 18708 to 19771 instructions, 1544 B of code, 168 B of stack.
+ * On Cortex-M4F, -O2: 318 to 320 instructions, 1012 B of code, 84 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -86,6 +90,8 @@ void tumbling_disc_flow_exact_f32(const tumbling_disc_constants_f32 *constants,
  *            samples of the ranges, 65536 searched from the worst); at 8270 hard samples no more.
  * Bound: not proved: a choice between values may turn out otherwise for rounded ones.
  * Cost: 3 add, 3 sub, 26 mul, 1 div, 1 sqrt, 4 sin, 1 cos, 1 less, 2 select.
+ * On Cortex-M0+, -O2: 18119 to 18488 instructions, 984 B of code, 144 B of stack.
+ * On Cortex-M4F, -O2: 419 instructions, 716 B of code, 84 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -106,6 +112,8 @@ void tumbling_disc_plan_dmv_f32(const tumbling_disc_constants_f32 *constants, co
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
  * Bound: not proved: its plan, of another function, has no enclosure here.
  * Cost: 23 add, 21 sub, 27 mul, 1 div, 2 neg, 1 sqrt, 1 less, 1 select.
+ * On Cortex-M0+, -O2: 7215 to 7542 instructions, 812 B of code, 136 B of stack.
+ * On Cortex-M4F, -O2: 123 instructions, 516 B of code, 64 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -128,6 +136,8 @@ void tumbling_disc_step_dmv_f32(const float plan[6], const float attitude[4], co
  *            1.1e-07), omega_next 1.9e-06 rad/s (seen 1.2e-06); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 40 add, 9 sub, 55 mul, 5 div, 5 neg.
+ * On Cortex-M0+, -O2: 12014 to 12381 instructions, 1044 B of code, 112 B of stack.
+ * On Cortex-M4F, -O2: 135 instructions, 556 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -154,6 +164,8 @@ void tumbling_disc_step_split_f32(const tumbling_disc_constants_f32 *constants,
  *            |q|^2 in 0.999 .. 1.001.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 52 add, 22 sub, 88 mul, 1 div, 1 sqrt.
+ * On Cortex-M0+, -O2: 16076 to 16636 instructions, 1556 B of code, 136 B of stack.
+ * On Cortex-M4F, -O2: 194 instructions, 800 B of code, 56 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.

@@ -56,6 +56,7 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 6 operations on pairs.
+ * On Cortex-M0+, -O2: 80108 to 82918 instructions, 1784 B of code, 728 B of stack.
  */
 int tumbling_disc_setup_f64(double A, double C, tumbling_disc_constants_f64 *constants);
 
@@ -73,6 +74,7 @@ int tumbling_disc_setup_f64(double A, double C, tumbling_disc_constants_f64 *con
  * Bound: not proved: a divisor may vanish for all that ranges tell.
  * Cost: 13 add, 8 sub, 47 mul, 9 div, 1 neg, 1 sqrt, 2 sin, 2 cos, 6 abs, 5 less, 1 power_of_two,
  *            6 select.
+ * On Cortex-M0+, -O2: 44127 to 46162 instructions, 2424 B of code, 320 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -90,6 +92,7 @@ void tumbling_disc_flow_exact_f64(const tumbling_disc_constants_f64 *constants,
  *            samples of the ranges, 65536 searched from the worst); at 8270 hard samples no more.
  * Bound: not proved: a choice between values may turn out otherwise for rounded ones.
  * Cost: 3 add, 3 sub, 26 mul, 1 div, 1 sqrt, 4 sin, 1 cos, 1 less, 2 select.
+ * On Cortex-M0+, -O2: 47806 to 48391 instructions, 1552 B of code, 264 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -110,6 +113,7 @@ void tumbling_disc_plan_dmv_f64(const tumbling_disc_constants_f64 *constants, co
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
  * Bound: not proved: its plan, of another function, has no enclosure here.
  * Cost: 23 add, 21 sub, 27 mul, 1 div, 2 neg, 1 sqrt, 1 less, 1 select.
+ * On Cortex-M0+, -O2: 16105 to 16466 instructions, 1272 B of code, 248 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -132,6 +136,7 @@ void tumbling_disc_step_dmv_f64(const double plan[6], const double attitude[4],
  *            1.9e-16), omega_next 3.5e-15 rad/s (seen 2.1e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 40 add, 9 sub, 55 mul, 5 div, 5 neg.
+ * On Cortex-M0+, -O2: 26294 to 26845 instructions, 1584 B of code, 232 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -158,6 +163,7 @@ void tumbling_disc_step_split_f64(const tumbling_disc_constants_f64 *constants,
  *            |q|^2 in 0.999 .. 1.001.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 52 add, 22 sub, 88 mul, 1 div, 1 sqrt.
+ * On Cortex-M0+, -O2: 37043 to 37831 instructions, 2376 B of code, 264 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.

@@ -55,6 +55,8 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 6 operations on pairs.
+ * On Cortex-M0+, -O2: 10309 to 10566 instructions, 938 B of code, 264 B of stack.
+ * On Cortex-M4F, -O2: 250 instructions, 580 B of code, 144 B of stack.
  */
 int unsymmetrical_rotor_in_carrier_axes_setup_f32(float I_xx, float I_yy, float I_zz,
     unsymmetrical_rotor_in_carrier_axes_constants_f32 *constants);
@@ -80,6 +82,8 @@ int unsymmetrical_rotor_in_carrier_axes_setup_f32(float I_xx, float I_yy, float 
  * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 0.00035 N m (seen
  *            0.00029); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 3 add, 2 sub, 14 mul, 1 sin, 1 cos.
+ * On Cortex-M0+, -O2: 5644 to 6405 instructions, 780 B of code, 136 B of stack.
+ * On Cortex-M4F, -O2: 126 to 127 instructions, 568 B of code, 52 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -105,6 +109,8 @@ void unsymmetrical_rotor_in_carrier_axes_moment_f32(const unsymmetrical_rotor_in
  *            0.00027), jacobian 0.00042 (seen 0.0003); assumed: sines and cosines of our own
  *            within 0.79 ulp.
  * Cost: 6 add, 7 sub, 27 mul, 1 neg, 1 sin, 1 cos.
+ * On Cortex-M0+, -O2: 7746 to 8606 instructions, 984 B of code, 136 B of stack.
+ * On Cortex-M4F, -O2: 166 to 167 instructions, 724 B of code, 52 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -114,7 +120,10 @@ void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_f32(
     float gamma, float gamma_dot, float gamma_ddot, float W, float W_dot, float moment[3],
     float jacobian[11]);
 
-/* The same, the whole matrix: 15 entries. */
+/* The same, the whole matrix: 15 entries.
+ * On Cortex-M0+, -O2: 7770 to 8591 instructions, 996 B of code, 136 B of stack.
+ * On Cortex-M4F, -O2: 171 to 172 instructions, 732 B of code, 52 B of stack.
+ */
 void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_dense_f32(
     const unsymmetrical_rotor_in_carrier_axes_constants_f32 *constants,
     float gamma, float gamma_dot, float gamma_ddot, float W, float W_dot, float moment[3],
@@ -137,6 +146,8 @@ void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_dense_f32(
  * Bound: proved, absolute, by rounding alone, on the whole ranges: angular_momentum 3.1e-05 kg
  *            m^2/s (seen 3.1e-05); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 1 sub, 6 mul, 1 sin, 1 cos.
+ * On Cortex-M0+, -O2: 4352 to 5136 instructions, 648 B of code, 112 B of stack.
+ * On Cortex-M4F, -O2: 110 to 111 instructions, 504 B of code, 44 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rigid.
  */
@@ -174,6 +185,8 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_f32(
  *            0.00023), rate_absolute 0.00038 N m (seen 0.00029); assumed: sines and cosines of our
  *            own within 0.79 ulp.
  * Cost: 3 add, 3 sub, 16 mul, 1 sin, 1 cos.
+ * On Cortex-M0+, -O2: 5932 to 6729 instructions, 824 B of code, 144 B of stack.
+ * On Cortex-M4F, -O2: 133 to 134 instructions, 596 B of code, 52 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rate_seen_from_N, rigid.
  */
@@ -197,6 +210,8 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_rate_f32(
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 0.019 J (seen
  *            0.015); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 1 add, 1 sub, 7 mul, 1 cos.
+ * On Cortex-M0+, -O2: 4523 to 5277 instructions, 648 B of code, 112 B of stack.
+ * On Cortex-M4F, -O2: 109 to 110 instructions, 500 B of code, 44 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rigid.
  */

@@ -58,6 +58,7 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 6 operations on pairs.
+ * On Cortex-M0+, -O2: 20213 to 22210 instructions, 1478 B of code, 496 B of stack.
  */
 int unsymmetrical_rotor_in_carrier_axes_setup_f64(double I_xx, double I_yy, double I_zz,
     unsymmetrical_rotor_in_carrier_axes_constants_f64 *constants);
@@ -83,6 +84,7 @@ int unsymmetrical_rotor_in_carrier_axes_setup_f64(double I_xx, double I_yy, doub
  * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 6.5e-13 N m (seen
  *            5.2e-13); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 3 add, 2 sub, 14 mul, 1 sin, 1 cos.
+ * On Cortex-M0+, -O2: 14434 to 16160 instructions, 1256 B of code, 216 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -108,6 +110,7 @@ void unsymmetrical_rotor_in_carrier_axes_moment_f64(const unsymmetrical_rotor_in
  *            5.1e-13), jacobian 7.7e-13 (seen 5.3e-13); assumed: sines and cosines of our own
  *            within 0.79 ulp.
  * Cost: 6 add, 7 sub, 27 mul, 1 neg, 1 sin, 1 cos.
+ * On Cortex-M0+, -O2: 19539 to 21352 instructions, 1632 B of code, 224 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            constant_mass, further_axes_are_right_handed, newton, rate_seen_from_N,
  *            reference_point, rigid, strong_third_law, third_law.
@@ -117,7 +120,9 @@ void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_f64(
     double gamma, double gamma_dot, double gamma_ddot, double W, double W_dot, double moment[3],
     double jacobian[11]);
 
-/* The same, the whole matrix: 15 entries. */
+/* The same, the whole matrix: 15 entries.
+ * On Cortex-M0+, -O2: 19542 to 21255 instructions, 1656 B of code, 224 B of stack.
+ */
 void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_dense_f64(
     const unsymmetrical_rotor_in_carrier_axes_constants_f64 *constants,
     double gamma, double gamma_dot, double gamma_ddot, double W, double W_dot, double moment[3],
@@ -140,6 +145,7 @@ void unsymmetrical_rotor_in_carrier_axes_moment_jacobian_dense_f64(
  * Bound: proved, absolute, by rounding alone, on the whole ranges: angular_momentum 5.7e-14 kg
  *            m^2/s (seen 5.7e-14); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 1 sub, 6 mul, 1 sin, 1 cos.
+ * On Cortex-M0+, -O2: 11493 to 13199 instructions, 1068 B of code, 192 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rigid.
  */
@@ -177,6 +183,7 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_f64(
  *            4.1e-13), rate_absolute 7.1e-13 N m (seen 5.2e-13); assumed: sines and cosines of our
  *            own within 0.79 ulp.
  * Cost: 3 add, 3 sub, 16 mul, 1 sin, 1 cos.
+ * On Cortex-M0+, -O2: 15201 to 16919 instructions, 1316 B of code, 240 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rate_seen_from_N, rigid.
  */
@@ -200,6 +207,7 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_rate_f64(
  * Bound: proved, absolute, by rounding alone, on the whole ranges: kinetic_energy 3.4e-11 J (seen
  *            2.9e-11); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 1 add, 1 sub, 7 mul, 1 cos.
+ * On Cortex-M0+, -O2: 11936 to 13594 instructions, 1060 B of code, 184 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
  *            further_axes_are_right_handed, rigid.
  */

@@ -66,6 +66,8 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 21 operations on pairs.
+ * On Cortex-M0+, -O2: 47527 to 49155 instructions, 1558 B of code, 512 B of stack.
+ * On Cortex-M4F, -O2: 899 instructions, 1230 B of code, 424 B of stack.
  */
 int wheel_pendulum_setup_f32(float m_p, float m_r, float l_p, float l_r, float J_p, float J_r,
     float g, wheel_pendulum_constants_f32 *constants);
@@ -93,6 +95,8 @@ int wheel_pendulum_setup_f32(float m_p, float m_r, float l_p, float l_r, float J
  *            theta_dot_rate 3.2e-05 rad/s^2 (seen 2.5e-05), s_rate 0.00072 rad/s^2 (seen 0.00069);
  *            assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 2 sub, 4 mul, 1 sin.
+ * On Cortex-M0+, -O2: 4160 to 4978 instructions, 632 B of code, 112 B of stack.
+ * On Cortex-M4F, -O2: 113 to 114 instructions, 512 B of code, 52 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -119,6 +123,8 @@ void wheel_pendulum_state_rate_f32(const wheel_pendulum_constants_f32 *constants
  *            theta_dot_rate 3.2e-05 rad/s^2 (seen 2.6e-05), s_rate 0.00072 rad/s^2 (seen 0.00069),
  *            jacobian 0.002 (seen 0.002); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 2 sub, 5 mul, 1 neg, 1 sin, 1 cos.
+ * On Cortex-M0+, -O2: 4293 to 5103 instructions, 680 B of code, 112 B of stack.
+ * On Cortex-M4F, -O2: 125 to 126 instructions, 548 B of code, 52 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -126,7 +132,10 @@ void wheel_pendulum_state_rate_jacobian_f32(const wheel_pendulum_constants_f32 *
     float theta, float theta_dot, float T, float *theta_rate, float *theta_dot_rate, float *s_rate,
     float jacobian[5]);
 
-/* The same, the whole matrix: 12 entries. */
+/* The same, the whole matrix: 12 entries.
+ * On Cortex-M0+, -O2: 4351 to 5147 instructions, 696 B of code, 112 B of stack.
+ * On Cortex-M4F, -O2: 133 to 134 instructions, 568 B of code, 52 B of stack.
+ */
 void wheel_pendulum_state_rate_jacobian_dense_f32(const wheel_pendulum_constants_f32 *constants,
     float theta, float theta_dot, float T, float *theta_rate, float *theta_dot_rate, float *s_rate,
     float jacobian[12]);
@@ -152,6 +161,8 @@ void wheel_pendulum_state_rate_jacobian_dense_f32(const wheel_pendulum_constants
  * Bound: proved, absolute, by rounding alone, on the whole ranges: mass_matrix 2.4e-10 (seen
  *            2.3e-10), damping_matrix 0 (seen 0), stiffness_matrix 1.5e-08 (seen 1.5e-08).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 19 instructions, 40 B of code, 12 B of stack.
+ * On Cortex-M4F, -O2: 18 instructions, 52 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -180,6 +191,8 @@ void wheel_pendulum_linearised_f32(const wheel_pendulum_constants_f32 *constants
  * Bound: proved, absolute, by rounding alone, on the whole ranges: energy 3.9e-06 J (seen 3e-06);
  *            assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 3 add, 5 mul, 1 cos.
+ * On Cortex-M0+, -O2: 4346 to 5127 instructions, 636 B of code, 104 B of stack.
+ * On Cortex-M4F, -O2: 109 to 110 instructions, 500 B of code, 44 B of stack.
  * Rests on: A_is_G, A_is_fixed, axes_are_orthonormal, body_triad, body_triad_is_orthonormal,
  *            constant_mass, rate_seen_from_N, rigid.
  */
@@ -207,6 +220,8 @@ void wheel_pendulum_energy_f32(const wheel_pendulum_constants_f32 *constants, fl
  *            1.9e-07), theta_dot_next 2.4e-06 rad/s (seen 1.7e-06), s_next 7.1e-05 rad/s (seen
  *            5.3e-05); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 18 add, 8 sub, 29 mul, 4 sin.
+ * On Cortex-M0+, -O2: 19144 to 22153 instructions, 1064 B of code, 192 B of stack.
+ * On Cortex-M4F, -O2: 433 to 437 instructions, 752 B of code, 132 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */

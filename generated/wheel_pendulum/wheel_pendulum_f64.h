@@ -69,6 +69,7 @@ typedef struct {
  * Error: each constant is worked out in twice the working precision and rounded once: at most 1
  *            ulp, unless the sum that it is cancels to less than 16 u of its largest product.
  * Cost: once; 21 operations on pairs.
+ * On Cortex-M0+, -O2: 99986 to 104348 instructions, 2546 B of code, 968 B of stack.
  */
 int wheel_pendulum_setup_f64(double m_p, double m_r, double l_p, double l_r, double J_p, double J_r,
     double g, wheel_pendulum_constants_f64 *constants);
@@ -96,6 +97,7 @@ int wheel_pendulum_setup_f64(double m_p, double m_r, double l_p, double l_r, dou
  *            theta_dot_rate 5.8e-14 rad/s^2 (seen 4.7e-14), s_rate 1.4e-12 rad/s^2 (seen 1.3e-12);
  *            assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 2 sub, 4 mul, 1 sin.
+ * On Cortex-M0+, -O2: 11091 to 12739 instructions, 1024 B of code, 168 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -123,6 +125,7 @@ void wheel_pendulum_state_rate_f64(const wheel_pendulum_constants_f64 *constants
  *            jacobian 3.7e-12 (seen 3.6e-12); assumed: sines and cosines of our own within 0.79
  *            ulp.
  * Cost: 2 sub, 5 mul, 1 neg, 1 sin, 1 cos.
+ * On Cortex-M0+, -O2: 11350 to 13067 instructions, 1080 B of code, 176 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -130,7 +133,9 @@ void wheel_pendulum_state_rate_jacobian_f64(const wheel_pendulum_constants_f64 *
     double theta, double theta_dot, double T, double *theta_rate, double *theta_dot_rate,
     double *s_rate, double jacobian[5]);
 
-/* The same, the whole matrix: 12 entries. */
+/* The same, the whole matrix: 12 entries.
+ * On Cortex-M0+, -O2: 11367 to 13141 instructions, 1112 B of code, 176 B of stack.
+ */
 void wheel_pendulum_state_rate_jacobian_dense_f64(const wheel_pendulum_constants_f64 *constants,
     double theta, double theta_dot, double T, double *theta_rate, double *theta_dot_rate,
     double *s_rate, double jacobian[12]);
@@ -156,6 +161,7 @@ void wheel_pendulum_state_rate_jacobian_dense_f64(const wheel_pendulum_constants
  * Bound: proved, absolute, by rounding alone, on the whole ranges: mass_matrix 4.4e-19 (seen
  *            4.3e-19), damping_matrix 0 (seen 0), stiffness_matrix 2.8e-17 (seen 2.8e-17).
  * Cost: no operations.
+ * On Cortex-M0+, -O2: 36 instructions, 72 B of code, 20 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */
@@ -184,6 +190,7 @@ void wheel_pendulum_linearised_f64(const wheel_pendulum_constants_f64 *constants
  * Bound: proved, absolute, by rounding alone, on the whole ranges: energy 7.3e-15 J (seen
  *            5.7e-15); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 3 add, 5 mul, 1 cos.
+ * On Cortex-M0+, -O2: 11426 to 13138 instructions, 1040 B of code, 176 B of stack.
  * Rests on: A_is_G, A_is_fixed, axes_are_orthonormal, body_triad, body_triad_is_orthonormal,
  *            constant_mass, rate_seen_from_N, rigid.
  */
@@ -211,6 +218,7 @@ void wheel_pendulum_energy_f64(const wheel_pendulum_constants_f64 *constants, do
  *            3.4e-16), theta_dot_next 4.4e-15 rad/s (seen 3.1e-15), s_next 1.4e-13 rad/s (seen
  *            1e-13); assumed: sines and cosines of our own within 0.79 ulp.
  * Cost: 18 add, 8 sub, 29 mul, 4 sin.
+ * On Cortex-M0+, -O2: 49583 to 56060 instructions, 1648 B of code, 320 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
  *            rate_seen_from_N, reference_point, rigid, strong_third_law, third_law.
  */

@@ -75,6 +75,7 @@ def good(folder: Path) -> dict[str, Any]:
         "values": {}, "until": 0.01, "step": 1e-3, "plot": None, "form": "text", "stop": None,
         "steady": "steady", "vary": {"m": "uniform(1, 2)"}, "keep": ["omega_x"], "error": None,
         "seed": 0, "instants": 20, "pairs": 0, "workers": 1, "scheduler": None, "chunk": None,
+        "near": None,
         "omega": [1, 2, 3], "omega_dot": [1, 2, 3],
         "scene": derive.load(BALL, "ball"), "turn": "z 1", "end": {}, "limits": {}, "avoid": (),
         "cost": {"time": 1}, "steps": 10, "starts": 1, "method": "shooting", "solver": "ipopt",
@@ -98,6 +99,7 @@ def test_whatever_an_argument_is_given_is_taken_or_refused_in_one_sentence(tmp_p
     every = methods()
     for method, argument in CASES:
         told = {n: x for n, x in good(tmp_path).items() if (method, n) in CASES}
+        told |= {"by": "step_rk4"} if method == "simulate" else {}
         for kind in JUNK.keys() - TAKEN.get(argument, set()):
             with pytest.raises(derive.DeriveError) as refused:
                 every[method](**told | {argument: JUNK[kind]})
