@@ -23,7 +23,7 @@ MOST = 1.15
 """Of what it takes at -Os."""
 HOT = "/* With DERIVE_ALLOW_CONTRACTION"
 """Where what is no set-up begins in a source."""
-LIMITS = {"m4f": 6500, "m0plus": 8000}
+LIMITS = {"m4f": 4800, "m0plus": 6000}
 
 
 def code(scene: str, core: str, level: str, folder: Path, mark: str = APART) -> int:
