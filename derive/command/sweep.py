@@ -18,7 +18,7 @@ import derive
 from derive.command.parsed import location, seconds, typed
 from derive.command.solve import values_named
 from derive.command.terminal import complain, console, error_console, print_rows
-from derive.solve.sweep.request import ERROR, MOVED_AT_MOST
+from derive.solve.sweep.request import ERROR, FARTHEST_START
 
 INSTANTS = 20
 LONGEST = 16
@@ -86,7 +86,7 @@ def options(command: argparse.ArgumentParser) -> None:
     )
     command.add_argument(
         "--near", type=seconds, metavar="PART",
-        help=f"of its range, that a start is moved at most onto constraints ({MOVED_AT_MOST:g})",
+        help=f"of its range, that a start is moved at most onto constraints ({FARTHEST_START:g})",
     )  # fmt: skip
     command.add_argument(
         "--out", type=location, required=True, metavar="DIR",

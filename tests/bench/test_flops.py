@@ -33,6 +33,7 @@ TARGETS = {
     "gyrostat": 64,
     "rigid_body": 96,
     "rigid_body_jacobian": 172,
+    "rigid_body_jacobian_dense": 172,
 }
 
 

@@ -43,7 +43,7 @@ ASKED = {
     "mechanics/sweep.py: linalg": "where divisors vanish, by margins of digits",
     "mechanics/follows.py: linalg": "what follows by constraints, by margins of digits",
     "mechanics/onto.py: linalg": "states on constraints at which divisors and ranks are looked at",
-    "mechanics/held.py: linalg": "which constraints say something, by margins of digits",
+    "mechanics/independence.py: linalg": "what constraints clearly say; else exactly",
     "mechanics/held_links.py: linalg": "which pivots stay clear of zero, by margins of digits",
     "mechanics/held_links.py: prod": "which pivots stay clear of zero, by margins of digits",
     "verify/cloud/fulfilled.py: linalg": "which constraints are independent, by margins of digits",

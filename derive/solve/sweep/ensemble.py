@@ -28,9 +28,9 @@ from derive.solve.sweep.plan import SweepPlan
 from derive.solve.sweep.recommended import as_asked, verified
 from derive.solve.sweep.request import (
     ERROR,
+    FARTHEST_START,
     MOST_INSTANTS,
     MOST_WORKERS,
-    MOVED_AT_MOST,
     Request,
     above_zero,
     design_of,
@@ -127,7 +127,7 @@ def swept(
     require_motion(found, known)
     error = ERROR if asked.error is None else above_zero(label, "error", asked.error)
     step = None if asked.step is None else above_zero(label, "step", asked.step)
-    near = MOVED_AT_MOST if asked.near is None else above_zero(label, "near", asked.near)
+    near = FARTHEST_START if asked.near is None else above_zero(label, "near", asked.near)
     closing = closing_of(found.library, [s.name for s in design.spreads])
     require_middle_near(found, design.spreads, values)
     begun = [f"{name}@0" for name in closing.moved]

@@ -56,12 +56,12 @@ class Gap:
 
 def tried_members(design: Design) -> dict[str, FloatColumn]:
     """Return what varies of the members that a length is chosen by, from all places of a sweep."""
-    return _in_blocks(design, TRIED, 0)
+    return _from_places(design, TRIED, 0)
 
 
 def other_members(design: Design) -> dict[str, FloatColumn]:
     """Return what varies of others beside these, which may be the same where there are few."""
-    return _in_blocks(design, OTHERS, TRIED)
+    return _from_places(design, OTHERS, TRIED)
 
 
 def how_many_tried(design: Design) -> int:
@@ -69,7 +69,7 @@ def how_many_tried(design: Design) -> int:
     return min(design.members, TRIED + OTHERS)
 
 
-def _in_blocks(design: Design, count: int, behind: int) -> dict[str, FloatColumn]:
+def _from_places(design: Design, count: int, behind: int) -> dict[str, FloatColumn]:
     members = design.members
     if members <= SMALL:
         shuffled = np.argsort(np.arange(members) * GOLDEN % 1)

@@ -26,7 +26,7 @@ MOST_SEED = 2**63 - 1
 MOST_INSTANTS = 10_000
 MOST_WORKERS = 4096
 ERROR = 1e-6
-MOVED_AT_MOST = 0.5
+FARTHEST_START = 0.5
 """Of its declared range, how far a component is moved at most so that constraints hold."""
 
 
