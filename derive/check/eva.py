@@ -111,20 +111,17 @@ class Analysis:
 
     def verdict(self, program: Program, cut: Sequence[Sector] | str) -> Verdict:
         """Return what Eva says of a function, by itself or with divisors that are proved."""
-        head, alone = (
-            self.head(program.name),
-            Verdict(*self.head(program.name), "skipped", str(cut)),
-        )
+        head, own = self.head(program.name), _hot(self.library, program)
+        alone = Verdict(*head, "skipped", str(cut))
         if not isinstance(cut, str):
             text = entered(self.library, program, self.precision, cut)
             alone = Verdict(*head, *_judged(self.said(program.name, text), len(cut)))
         ranges = () if alone.outcome != "skipped" else self.divisors(program)
         if not ranges:
             return alone
-        if says := escaped(self.library, _hot(self.library, program), ranges, self.precision):
+        if says := escaped(self.library, own, ranges, self.precision):
             return Verdict(*head, "FAILS", says)
         parts = cases_of(self.library, program, self.precision)
-        own = _hot(self.library, program)
         whole = whole_sectors(self.library, own, parts, self.precision)
         names = CNames(self.library.scene.name)
         source = names.file(self.precision, "c")

@@ -97,13 +97,8 @@ def gap_between(plan: SweepPlan, states: Sequence[Quantity], one: Endings, fine:
     differs = one.ended != fine.ended
     with np.errstate(all="ignore"):
         sizes = np.max(np.where(np.isfinite(there), np.abs(there), 0.0), axis=2, keepdims=True)
-        sizes = np.maximum(
-            sizes,
-            NOISE
-            * np.array([float(q.ends[1] - q.ends[0]) for q in states for _ in q.components])[
-                :, None, None
-            ],
-        )
+        widths = np.array([float(q.ends[1] - q.ends[0]) for q in states for _ in q.components])
+        sizes = np.maximum(sizes, NOISE * widths[:, None, None])
         beside = np.broadcast_to(beside_what(states, sizes[..., 0])[..., None], there.shape)
         there_are = np.isfinite(here).all(axis=0) & np.isfinite(there).all(axis=0)
         there_are &= ~differs[:, None]
