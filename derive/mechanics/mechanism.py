@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
-from typing import Any
+from typing import Any, TypeVar
 
 from sympy import Expr, Integer, Pow
 
@@ -29,6 +29,8 @@ from derive.mechanics.vocabulary import Vocabulary
 from derive.mechanics.words import Words, words
 from derive.scene import Scene, SceneError
 
+T = TypeVar("T")
+
 
 @dataclass
 class Mechanism:
@@ -45,6 +47,14 @@ class Mechanism:
     wholes: dict[str, Problem] = field(default_factory=dict)
     leans: dict[str, Lean] = field(default_factory=dict)
     told: dict[tuple[str, str], Any] = field(default_factory=dict)
+
+    def told_once(self, what: str, base: str, make: Callable[[], T]) -> T:
+        """Return what readers are told of a function, made when it is asked for first."""
+        place = what, base
+        if place not in self.told:
+            self.told[place] = make()
+        found: T = self.told[place]
+        return found
 
     @property
     def vocabulary(self) -> Vocabulary:

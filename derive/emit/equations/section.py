@@ -124,11 +124,7 @@ class Outline:
 
 def outline(library: Library, base: str) -> Outline:
     """Return the equations of a function as they are first written; made once."""
-    place, kept = ("outline", base), library.mechanism.told
-    if place not in kept:
-        kept[place] = _outline(library, base)
-    found: Outline = kept[place]
-    return found
+    return library.mechanism.told_once("outline", base, lambda: _outline(library, base))
 
 
 def _outline(library: Library, base: str) -> Outline:
@@ -151,11 +147,7 @@ def _outline(library: Library, base: str) -> Outline:
 
 def section(library: Library, base: str) -> Section:
     """Return the equations of a function, its symbols without names yet; made once."""
-    place, kept = ("section", base), library.mechanism.told
-    if place not in kept:
-        kept[place] = _section(library, base)
-    found: Section = kept[place]
-    return found
+    return library.mechanism.told_once("section", base, lambda: _section(library, base))
 
 
 def _section(library: Library, base: str) -> Section:

@@ -145,11 +145,7 @@ def for_readers(mechanism: Mechanism, base: str) -> Problem:
 
 def written_equations(mechanism: Mechanism, base: str) -> Readable:
     """Return the equations of a function as a reader wants them, made once."""
-    place, kept = ("written", base), mechanism.told
-    if place not in kept:
-        kept[place] = _written_equations(mechanism, base)
-    found: Readable = kept[place]
-    return found
+    return mechanism.told_once("written", base, lambda: _written_equations(mechanism, base))
 
 
 def _written_equations(mechanism: Mechanism, base: str) -> Readable:
