@@ -43,11 +43,12 @@ class Cluster:
         own = ("--no-nanny", "--nthreads", "1", "--host", "127.0.0.1")
         return self.start("worker", *own, **also)
 
-    def worker_without_compiler(self) -> subprocess.Popen[bytes]:
+    def worker_without_compiler(self, and_does: str = "") -> subprocess.Popen[bytes]:
         """Start a worker with nothing on its PATH, to which no wheel brings a compiler either."""
         place = self.file.parent / "bare"
         place.mkdir()
-        (place / "sitecustomize.py").write_text("import sys\nsys.modules['ziglang'] = None\n")
+        text = f"import sys\nsys.modules['ziglang'] = None\n{and_does}"
+        (place / "sitecustomize.py").write_text(text)
         return self.worker(PATH=str(place), CC="", PYTHONPATH=str(place))
 
     @property
@@ -137,6 +138,25 @@ def test_a_worker_without_compiler_gives_the_same_bits_and_says_so(
     (told,) = (d for d in both.doubts if says in d)
     assert 0 < int(told.split()[0]) < 30
     assert same(both, undisturbed)
+
+
+OTHER_BITS = """
+from derive.solve.sweep import kit
+
+called = kit.ByCasadi.call
+
+def longer(*given):
+    made = called(*given)
+    return lambda length: made(length * (1 + 2.0**-40))
+
+kit.ByCasadi.call = longer
+"""
+
+
+def test_a_worker_that_has_other_bits_is_seen(cluster: Cluster, tmp_path: Path) -> None:
+    undisturbed = swept_top(tmp_path / "here")
+    cluster.worker_without_compiler(OTHER_BITS)
+    assert files(swept_top(tmp_path / "there", scheduler=cluster.address)) != files(undisturbed)
 
 
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:9", "127.0.0.1", "carrier://pigeon:8786"])
