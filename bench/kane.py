@@ -51,10 +51,9 @@ class KaneEquations:
     def whole(self) -> tuple[Matrix, Matrix]:
         """Return the matrix and the right side of unknowns and multipliers together."""
         held = self.slopes.rows
-        if not held:
-            return self.mass, self.right
-        matrix = Matrix([[self.mass, self.slopes.T], [self.slopes, zeros(held, held)]])
-        return matrix, Matrix([*self.right, *(-self.rests)])
+        upper = Matrix.hstack(self.mass, self.slopes.T)
+        lower = Matrix.hstack(self.slopes, zeros(held, held))
+        return Matrix.vstack(upper, lower), Matrix([*self.right, *(-self.rests)])
 
     def following(self, columns: Sequence[int]) -> tuple[Matrix, Matrix]:
         """Return the same with some unknowns dependent, as KanesMethod takes multipliers out."""
