@@ -17,8 +17,8 @@ from derive.scene import catalogue
 collect_ignore_glob = ["data/*"]
 settings.register_profile("derive", deadline=None)
 settings.load_profile("derive")
-FEW = 2
-"""Of a longer table the quick tests run so many rows, and ``-m long`` the others."""
+FEW = 1
+"""Of a table the quick tests run so many rows, and ``-m long`` the others."""
 PART = 24
 """Of a table of long tests, continuous integration runs a row, or one of so many."""
 SLOW = {"acrobot", "quadrotor", "rattleback"}

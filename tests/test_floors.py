@@ -15,6 +15,7 @@ import pytest
 import derive
 from derive.scene import Scene, catalogue
 from tests.made import SHORT, scene_of
+from tests.source import nodes_of, parsed
 
 ROOMS = (
     *("lecture", "scene", "program", "mechanics", "lower", "motion"),
@@ -72,16 +73,10 @@ def floor(name: str) -> int:
 
 
 @cache
-def nodes_of(text: str) -> tuple[ast.AST, ...]:
-    """Return all that a source text is made of."""
-    return tuple(ast.walk(ast.parse(text)))
-
-
-@cache
 def imported(text: str) -> frozenset[str]:
     """Return the dotted name of every module that a source text imports, wherever it does."""
     found = set()
-    for node in nodes_of(text):
+    for node in nodes_of(parsed(text)):
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and node.module == "derive":
@@ -130,7 +125,7 @@ def test_a_module_that_imports_mechanics_is_counted_however_it_does() -> None:
 
 def forms_known(text: str) -> set[str]:
     """Return what a source text names of the two forms that a scene may be written in."""
-    nodes = nodes_of(text)
+    nodes = nodes_of(parsed(text))
     names = {getattr(n, "id", getattr(n, "attr", "")) for n in nodes}
     names |= {alias.name for n in nodes if isinstance(n, ast.ImportFrom) for alias in n.names}
     return {*FORMS} & {*names, *(part for m in imported(text) for part in m.split("."))}

@@ -12,10 +12,11 @@ from pkgutil import resolve_name
 from hatchling.builders.wheel import WheelBuilder
 
 from derive import __version__
+from tests.source import nodes_of, parsed
 
 ROOT = Path(__file__).parent.parent
 TESTS = sorted((ROOT / "tests").rglob("*.py"))
-SETUP = "python3.11 -m venv .venv && .venv/bin/python -m pip install -q -e"
+SETUP = "python3.11 -m venv .venv && .venv/bin/python -m pip install -q --no-compile -e"
 TEST = f"{SETUP} '.[test]' && .venv/bin/python -m pytest -q -n auto"
 GENERATE = f"{SETUP} . && .venv/bin/derive generate"
 
@@ -149,7 +150,7 @@ def test_every_test_shows_what_it_asserts_or_which_error_it_expects() -> None:
     tests = [
         (file.name, node.name, node)
         for file in files
-        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8")))
+        for node in nodes_of(parsed(file.read_text(encoding="utf-8")))
         if isinstance(node, ast.FunctionDef) and node.name.startswith("test_")
     ]
     assert len(tests) > len(files)
@@ -178,7 +179,7 @@ def replaced(text: str) -> list[tuple[str, str]]:
 
     Of owners that the file itself makes (a local variable) nothing is known before it runs.
     """
-    tree = ast.parse(text)
+    tree = parsed(text)
     known = {
         (name.asname or name.name): f"{node.module}.{name.name}"
         for node in tree.body
@@ -186,7 +187,7 @@ def replaced(text: str) -> list[tuple[str, str]]:
         for name in node.names
     }
     found = []
-    for node in ast.walk(tree):
+    for node in nodes_of(tree):
         match node:
             case ast.Call(ast.Attribute(attr="setattr"), [ast.Constant(str(path)), *_]):
                 found.append((*path.rpartition(".")[::2],))

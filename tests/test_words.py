@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from derive.scene.short_form.quantities import QUANTITIES
+from tests.source import nodes_of, parsed
 
 ROOT = Path(__file__).parent.parent / "derive"
 
@@ -18,7 +19,7 @@ ROOT = Path(__file__).parent.parent / "derive"
 def pages() -> Mapping[str, ast.Module]:
     """Return all modules of the package."""
     return {
-        str(page.relative_to(ROOT).with_suffix("")): ast.parse(page.read_text(encoding="utf-8"))
+        str(page.relative_to(ROOT).with_suffix("")): parsed(page.read_text(encoding="utf-8"))
         for page in sorted(ROOT.rglob("*.py"))
     }
 
@@ -143,9 +144,9 @@ def named(tree: ast.Module) -> set[str]:
 
     Keys are none: what a dictionary of the module's own calls its values decides nothing.
     """
-    keys = {id(k) for node in ast.walk(tree) if isinstance(node, ast.Dict) for k in node.keys}
-    keys |= {id(node.slice) for node in ast.walk(tree) if isinstance(node, ast.Subscript)}
-    texts = (n.value for n in ast.walk(tree) if isinstance(n, ast.Constant) and id(n) not in keys)
+    keys = {id(k) for node in nodes_of(tree) if isinstance(node, ast.Dict) for k in node.keys}
+    keys |= {id(node.slice) for node in nodes_of(tree) if isinstance(node, ast.Subscript)}
+    texts = (n.value for n in nodes_of(tree) if isinstance(n, ast.Constant) and id(n) not in keys)
     plain = (re.sub("(_[wxyz]?)?$", "", text) for text in texts if isinstance(text, str))
     return {*plain} & QUANTITIES.keys()
 
@@ -225,12 +226,12 @@ def apart(names: Iterable[tuple[str, str]]) -> tuple[list[tuple[str, str]], ...]
 def reads(tree: ast.Module) -> Iterator[tuple[str, str]]:
     """Yield what a module reads of others: their page, the name."""
     modules: dict[str, str] = {}
-    for node in ast.walk(tree):
+    for node in nodes_of(tree):
         if isinstance(node, ast.ImportFrom):
             page = (node.module or "").removeprefix("derive").strip(".").replace(".", "/")
             yield from ((page, each.name) for each in node.names)
             modules |= {n.asname or n.name: f"{page}/{n.name}".strip("/") for n in node.names}
-    for node in ast.walk(tree):
+    for node in nodes_of(tree):
         if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
             yield modules.get(node.value.id, ""), node.attr
 

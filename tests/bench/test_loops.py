@@ -42,6 +42,7 @@ def test_what_holds_a_machine_is_told_to_sympy(path: Path, old: str, new: str) -
     assert not same(own, equations(told(path, old, new)))
 
 
+@pytest.mark.long
 def test_a_loop_errs_by_little_beside_equations_of_another_author() -> None:
     own = told(BY_FORMULA)
     made, found = library(own.scene), equations(own)

@@ -180,6 +180,7 @@ def test_derivatives_that_nobody_asks_for_are_not_computed(
         assert all(np.isfinite(np.array(r)).all() == finite for r in map(ca.DM, results))
 
 
+@pytest.mark.long
 def test_integers_of_32_bits_do_not_compile(workshop: Path) -> None:
     found, old = dict(texts("principal")), "typedef long long int casadi_int"
     assert old in found["craft_external.c"]
@@ -188,6 +189,7 @@ def test_integers_of_32_bits_do_not_compile(workshop: Path) -> None:
         built("craft", found, 2, (workshop, find_compiler()))
 
 
+@pytest.mark.long
 def test_neither_does_the_float_build_nor_a_double_that_is_none(workshop: Path) -> None:
     found = dict(texts("principal"))
     floats = found | {f"craft_f64.{end}": found[f"craft_f32.{end}"] for end in "ch"}

@@ -95,6 +95,7 @@ def test_thousands_of_members_have_the_bits_of_the_scenes_own_function(
         assert all(np.any(table) for table in found.values())
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("compiler", COMPILERS)
 def test_angles_beyond_our_own_sines_and_no_numbers_have_those_bits_too(
     compiler: str, tmp_path: Path

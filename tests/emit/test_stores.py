@@ -52,6 +52,7 @@ def test_inputs_are_read_before_results_are_stored_over_them(name: str) -> None:
         )
 
 
+@pytest.mark.long
 def test_a_store_before_an_input_is_read_is_found() -> None:
     program = library_of("rigid_body")["state_rate"]
     load, *rest = lines_of(program)

@@ -18,8 +18,10 @@ def made(wanted: str, text: str = PINS) -> Library:
 @pytest.mark.parametrize(
     ("wanted", "name", "most", "before"),
     [
-        ("both: accelerations, pin1, pin2, pin3", "both", 139, 200),
         ("q_1_ddot", "q_1_ddot", 61, 157),
+        pytest.param(
+            "both: accelerations, pin1, pin2, pin3", "both", 139, 200, marks=pytest.mark.long
+        ),
         pytest.param("pin1", "pin1", 137, 212, marks=pytest.mark.long),
     ],
 )
@@ -39,6 +41,7 @@ def test_reactions_change_with_what_is_given_as_their_proof_says() -> None:
     assert own["both_jacobian"].sparsity
 
 
+@pytest.mark.long
 def test_a_reaction_of_the_wrong_sign_is_no_way(monkeypatch: pytest.MonkeyPatch) -> None:
     right = beside.reactions
 

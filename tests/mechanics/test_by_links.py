@@ -92,6 +92,7 @@ def test_the_moments_that_drive_an_arm_cost_what_recursion_in_the_best_axes_cost
     prove(made)
 
 
+@pytest.mark.long
 def test_a_hinge_stands_on_its_axis_nearest_to_what_carries_it() -> None:
     own = machine_of(arm("zyx"))
     sought = frozenset(own.lean("drives").problem.answers)

@@ -73,6 +73,7 @@ def test_what_cannot_hold_is_refused_by_a_sentence(row: tuple[str, str, str, str
     assert "\n" not in found
 
 
+@pytest.mark.long
 def test_ranges_that_reach_where_bars_are_in_line_are_refused_with_the_place() -> None:
     text = FOUR.replace("range = [-0.5, 0.5]", "range = [-3, 3]")
     says = "constraint 'd along .' says nothing that the others do not at .*q_1 = -?1.571"
@@ -80,6 +81,7 @@ def test_ranges_that_reach_where_bars_are_in_line_are_refused_with_the_place() -
         library(parse_scene(text, "held"))
 
 
+@pytest.mark.long
 def test_a_force_that_shares_its_part_with_others_cannot_be_told() -> None:
     text = FOUR.replace('axes = ["x", "z"]', "").replace('"d_x"', '"d_y"')
     with pytest.raises(SceneError, match="'d_y' cannot be told: constraint 'd along y' says"):
@@ -94,6 +96,7 @@ def test_what_is_always_0_is_left_out(zero: str) -> None:
     assert found.mechanism.held.doubts[0].startswith("constraint 'none' says nothing that the")
 
 
+@pytest.mark.long
 def test_a_load_of_no_power_that_is_said_to_enforce_is_doubted_where_another_does() -> None:
     pushed = 'loads.edge = { on = "sled", along = "sled", force = ["0", "?B", "0"] }\n'
     text = pushed + LOADED.replace(ZERO, f'{ZERO}\nload = "pin"\n{ARM}')

@@ -91,6 +91,7 @@ def test_an_energy_of_other_loads_is_noticed(row: tuple[str, str, str, str]) -> 
     assert outcomes(replace(made, mechanism=replace(made.mechanism, scene=right))) == {"FAILS"}
 
 
+@pytest.mark.long
 def test_the_balance_of_a_body_turned_by_a_quaternion_has_all_digits() -> None:
     assert outcomes(library_of("rigid_body")) == {"holds"}
 
@@ -184,6 +185,7 @@ def test_a_momentum_about_a_point_that_is_nowhere_is_refused() -> None:
         library(parse_scene(text, "disc"))
 
 
+@pytest.mark.long
 def test_weights_up_a_long_chain_have_the_energy_of_places_carried_up_and_few_terms(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -40,9 +40,8 @@ def test_a_chain_is_linearised_by_the_factors_that_solve_it(name: str, rods: int
     prove(made)
 
 
-@pytest.mark.parametrize(
-    "text", [ON_A_CART, pytest.param(PUSHED, marks=pytest.mark.long)], ids=["cart", "pushed"]
-)
+@pytest.mark.long
+@pytest.mark.parametrize("text", [ON_A_CART, PUSHED], ids=["cart", "pushed"])
 def test_links_that_branch_slide_and_are_pushed_are_linearised(text: str) -> None:
     made = library(parse_scene(with_jacobian(text), "chain"))
     prove(made)
@@ -85,6 +84,7 @@ def test_what_slopes_follow_from_is_not_proved_if_it_is_wrong(
         prove(made)
 
 
+@pytest.mark.long
 def test_a_chain_is_told_how_its_equations_change_with_each_absolute_angle() -> None:
     own = mechanism(parse_scene(chain("yyy"), "chain"))
     told = {how: implied for how, _, implied in by_links(own, "accelerations")}

@@ -56,6 +56,7 @@ def test_what_nearly_says_the_same_is_kept_and_holds_both_still(other: str) -> N
     assert [float(x) for x in found.values()] == [0, 0]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("other", ["x - y - tiny", "x - 1.0000000000000001*y"])
 def test_what_rounding_may_have_put_beside_another_is_left_out_and_said_to_be_off(
     other: str,

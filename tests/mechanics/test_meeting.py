@@ -75,10 +75,12 @@ def verdicts(own: Library) -> set[str]:
     return {v.outcome for v in (*clouds(own, each), *energy_balance(own, each))}
 
 
+@pytest.mark.long
 def test_the_force_of_a_slot_keeps_the_energy_of_a_cloud() -> None:
     assert verdicts(made(LEVER + PIN, ', "energy", "c_y"')) == {"holds"}
 
 
+@pytest.mark.long
 def test_a_slot_whose_axes_turn_with_nothing_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(meeting, "body_turning_with", lambda *_: INERTIAL)
     assert "FAILS" in verdicts(made(LEVER + PIN))
@@ -90,6 +92,7 @@ def test_axes_that_turn_with_no_body_are_refused() -> None:
         made(LEVER + third + ON_PLATE)
 
 
+@pytest.mark.long
 def test_a_load_of_the_scene_that_closes_a_loop_is_solved_as_ours() -> None:
     path = Path(__file__).parents[1] / "data" / "trials" / "four_bar.toml"
     close = ('constraints.close = { load = "d", on = "bar", at = ["l", "0", "0"], '

@@ -37,6 +37,7 @@ def programs(text: str) -> list[Any]:
     return [(p.name, p.results, p.ops, p.numbers) for p in (made.setup, *made.printed())]
 
 
+@pytest.mark.long
 def test_a_weld_need_not_be_declared() -> None:
     assert programs(TEXT) == programs(DECLARED)
     scene = parse_scene(TEXT, "sat")
@@ -112,6 +113,7 @@ def test_the_first_of_two_blades_lies_where_it_is_said_to() -> None:
     assert [float(t) for t in parts] == [0.25, 0.75]
 
 
+@pytest.mark.long
 def test_a_field_may_be_told_by_its_centre_by_an_orbit_or_by_a_formula() -> None:
     centre = '{ mu = "mu", distance = "R" }'
     assert programs(TEXT) == programs(TEXT.replace(centre, '"3*(mu/R^3)"'))

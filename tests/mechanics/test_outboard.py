@@ -66,6 +66,7 @@ def test_a_load_that_is_left_out_or_a_body_that_is_moved_is_seen() -> None:
         assert untrue(own, [*of])
 
 
+@pytest.mark.long
 def test_the_balances_of_single_bodies_span_all_others() -> None:
     balances = balances_of(MACHINES["in turn"])
 
@@ -76,6 +77,7 @@ def test_the_balances_of_single_bodies_span_all_others() -> None:
     assert rank(balances.spanning[1:]) < 18
 
 
+@pytest.mark.long
 def test_a_long_chain_has_a_balance_a_joint_and_no_others_valued() -> None:
     balances = balances_of(CHAIN)
     free = [f"q_{k}_ddot" for k in range(1, 9)]

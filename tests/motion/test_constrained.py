@@ -48,6 +48,7 @@ def outcomes(own: Library) -> dict[tuple[str, str], str]:
     return {(v.function, v.check): v.outcome for v in every}
 
 
+@pytest.mark.long
 def test_a_sled_steps_along_its_blade_with_the_order_and_slopes_that_it_claims() -> None:
     own = made("sleigh", "step_rk4", "step_rk4_compensated", "step_rk4_jacobian")
     steps = ("step_rk4", "step_rk4_compensated")

@@ -61,6 +61,7 @@ def test_so_it_is_of_states_without_a_quaternion_and_with_wheels(name: str) -> N
     assert worst(made, plain, values) < EXACTLY
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("of", thinned(CASES, 4))
 def test_the_column_of_a_tangent_is_the_rate_of_the_errors(of: tuple[str, str]) -> None:
     made, plain, given, values = made_of(*of, "tangent")

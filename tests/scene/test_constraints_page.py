@@ -13,6 +13,7 @@ PAGE = (Path(__file__).parents[2] / "docs" / "constraints.md").read_text(encodin
 EXAMPLES = re.findall(r"^```toml\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("text", EXAMPLES)
 def test_an_example_of_the_page_is_a_scene_and_is_proved(text: str) -> None:
     scene = parse_scene(text, "example")

@@ -95,6 +95,7 @@ def test_all_methods_are_tried() -> None:
     assert {argument for _, argument in CASES} == {*good(Path())}
 
 
+@pytest.mark.long
 def test_whatever_an_argument_is_given_is_taken_or_refused_in_one_sentence(tmp_path: Path) -> None:
     every = methods()
     for method, argument in CASES:

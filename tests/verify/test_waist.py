@@ -29,6 +29,7 @@ def step_of(name: str, work: int = WORK // 64) -> Cutting:
     return cutting(library, program, spans["attitude_next"], F32, work)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", STEPS)
 def test_a_turned_quaternion_is_known_to_be_as_long_as_its_turn_and_another_is_not(
     name: str,
@@ -88,6 +89,7 @@ def after_and_before(at: Cutting, share: float) -> tuple[Any, Any]:
     return tail._certain(np.array([by_name[n] for n in tail.box.names])), at._certain(points)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", STEPS)
 def test_what_comes_after_a_waist_is_off_by_all_that_comes_before(name: str) -> None:
     after, whole = after_and_before(step_of(name), 1.0)
@@ -96,6 +98,7 @@ def test_what_comes_after_a_waist_is_off_by_all_that_comes_before(name: str) -> 
     assert np.any(after < whole)
 
 
+@pytest.mark.long
 def test_a_step_with_a_waist_is_bounded_closely_and_its_divisor_is_not_assumed() -> None:
     library = library_of("tumbling_disc")
     by = Proof(WORK // 8, Search(2048, 24, 512))
@@ -109,6 +112,7 @@ def test_a_step_with_a_waist_is_bounded_closely_and_its_divisor_is_not_assumed()
     )
 
 
+@pytest.mark.long
 def test_choices_that_are_made_are_not_cut_again() -> None:
     """A part in which a body's moments have an order has it in all its parts."""
     library = library_of("tumbling_body")

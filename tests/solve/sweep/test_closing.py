@@ -53,6 +53,7 @@ def cranks(tmp_path_factory: pytest.TempPathFactory) -> derive.Ensemble:
     )  # fmt: skip
 
 
+@pytest.mark.long
 def test_a_rate_that_does_not_vary_follows_from_those_that_do(sled: derive.Ensemble) -> None:
     found = columns(sled)
     assert sled.ended == {"until": 200}
@@ -63,6 +64,7 @@ def test_a_rate_that_does_not_vary_follows_from_those_that_do(sled: derive.Ensem
     assert np.abs(ahead - should).max() < ROUNDED  # the nearest of rates whose ranges are alike
 
 
+@pytest.mark.long
 def test_what_varies_stays_as_it_is_drawn(tmp_path: Path) -> None:
     vary = TURNED | {"x_dot": "normal(1.2, 0.1)"}
     held = {n: x for n, x in BLADE.items() if n != "x_dot"}
@@ -87,6 +89,7 @@ def test_chunks_and_the_want_of_a_compiler_change_no_bit_of_a_start(
     assert same(sled, alone)
 
 
+@pytest.mark.long
 def test_a_start_that_is_not_brought_on_is_noticed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -121,6 +124,7 @@ def test_a_step_is_found_for_what_is_held(tmp_path: Path) -> None:
     assert own.halved["psi@end"] < 1e-6
 
 
+@pytest.mark.long
 def test_a_start_that_is_far_off_is_refused_and_the_page_tells_how_far_others_are(
     tmp_path: Path,
 ) -> None:

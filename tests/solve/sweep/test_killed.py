@@ -81,6 +81,7 @@ def test_a_killed_sweep_leaves_no_process_and_goes_on_with_the_same_bits(tmp_pat
     assert same(again, swept_top(tmp_path / "undisturbed"))
 
 
+@pytest.mark.long
 def test_a_key_stops_a_sweep_in_one_line(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     folder = tmp_path / "runs"
     with started(by_command, folder, 2) as group:

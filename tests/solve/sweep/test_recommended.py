@@ -45,6 +45,7 @@ def worst_beside_the_lecture(own: derive.Ensemble, until: float) -> float:
     return worst
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("error", [1e-5, 1e-8])
 def test_members_that_nobody_tried_keep_to_the_error(error: float, tmp_path: Path) -> None:
     own = found(tmp_path / "runs", error=error)
@@ -59,6 +60,7 @@ def test_a_length_that_is_not_judged_keeps_to_nothing(
     assert worst_beside_the_lecture(found(tmp_path / "runs"), 0.2) > 1e-6
 
 
+@pytest.mark.long
 def test_a_length_is_shortened_until_it_keeps_to_the_error_at_others(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -76,6 +78,7 @@ def test_a_length_is_shortened_until_it_keeps_to_the_error_at_others(
     assert worst_beside_the_lecture(fooled, 0.2) > 1e-6
 
 
+@pytest.mark.long
 def test_a_step_that_is_cheaper_for_its_error_is_taken(tmp_path: Path) -> None:
     held = {"I_xx": 1.44, "I_yy": 1.64, "I_zz": 1.84, "omega_x": 1, "omega_y": 1,
             "attitude_w": 1, "attitude_x": 0, "attitude_y": 0, "attitude_z": 0}  # fmt: skip
@@ -87,6 +90,7 @@ def test_a_step_that_is_cheaper_for_its_error_is_taken(tmp_path: Path) -> None:
         assert own.says.startswith(step)
 
 
+@pytest.mark.long
 def test_where_no_length_keeps_to_the_error_it_is_refused(tmp_path: Path) -> None:
     with pytest.raises(derive.DeriveError) as refused:
         found(tmp_path / "runs", error=1e-17)
@@ -113,6 +117,7 @@ def test_members_that_are_tried_are_from_all_places(spread: tuple[Spread, ...]) 
             assert "g" not in first or np.ptp(first["g"]) > 0.9
 
 
+@pytest.mark.long
 def test_members_that_all_become_no_numbers_by_a_length_do_not_speak_for_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -62,6 +62,7 @@ def test_lengths_that_differ_do_not_end_alike(tmp_path: Path) -> None:
     assert abs(replayed(words).states["alpha"][-1] - value) > 1e-11
 
 
+@pytest.mark.long
 def test_a_line_is_by_the_step_of_the_sweep(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -146,6 +146,7 @@ def test_without_a_compiler_casadi_gives_the_same_bits_and_is_named(
     assert [d for d in found.doubts if "CasADi" in d] != []
 
 
+@pytest.mark.long
 def test_threads_of_a_worker_compile_once(monkeypatch: pytest.MonkeyPatch) -> None:
     made, compiled = list[int](), kit.shared_members
 
@@ -162,6 +163,7 @@ def test_threads_of_a_worker_compile_once(monkeypatch: pytest.MonkeyPatch) -> No
     assert (len(made), len({id(x) for x in each})) == (1, 1)
 
 
+@pytest.mark.long
 def test_a_disk_that_is_full_ends_a_sweep_that_then_goes_on(
     top: derive.Ensemble, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
