@@ -119,7 +119,7 @@ def _states(frames: Frames, brings: Onto, box: Box) -> list[np.ndarray]:
     for _ in range(TRIES):
         start = box.low + (box.high - box.low) * np.array([dice.random() for _ in box.symbols])
         point, fits = brings.brought(start[None, :])
-        if fits[0] and box.within(point[0], brings.places):
+        if fits[0] and not box.outside(point[0], brings.places):
             found.append(point[0])
             flat.append(brings.flat(start, point[0]))
             if len(found) == STATES:

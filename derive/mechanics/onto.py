@@ -201,8 +201,10 @@ class Onto:
 
 def _split(values: Sequence[Any], points: Doubles, columns: int) -> tuple[Doubles, Doubles]:
     """Return values (points, conditions), and slopes by each component that moves."""
-    flat = np.array([np.broadcast_to(np.asarray(v, float), len(points)) for v in values]).T
-    count = flat.shape[1] // (columns + 1)
+    each = np.empty((len(values), len(points)))
+    for row, value in zip(each, values, strict=True):
+        row[:] = value
+    flat, count = each.T, len(values) // (columns + 1)
     return flat[:, :count], flat[:, count:].reshape(len(points), count, columns)
 
 

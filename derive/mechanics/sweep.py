@@ -205,10 +205,10 @@ def matrices(found: Sweep, entries: list[list[Expr]], *, of_masses: bool = False
     """
     pairs = [[found.of(e) for e in row] for row in entries]
     shape = np.broadcast_shapes(*(v.shape for row in pairs for v, _ in row), (1,))
-    values, sizes = (
-        np.moveaxis(np.array([[np.broadcast_to(p[k], shape) for p in row] for row in pairs]), -1, 0)
-        for k in (0, 1)
-    )
+    values, sizes = np.empty((2, *shape, len(pairs), len(pairs[0])))
+    for m, row in enumerate(pairs):
+        for n, (value, size) in enumerate(row):
+            values[:, m, n], sizes[:, m, n] = value, size
     sizes = abs(values) if of_masses else sizes
     for axis in (2, 1, 2, 1):
         scale = sizes.max(axis=axis, keepdims=True)
