@@ -1,5 +1,6 @@
 """Principal axes against fifty digits, on ordinary tensors and on the hard ones."""
 
+from fractions import Fraction
 from math import isclose
 from typing import Any
 
@@ -9,6 +10,8 @@ from hypothesis import strategies as st
 from mpmath import eigsy, matrix, mp, mpf
 
 from derive import DeriveError
+from derive.motion.exact import diagonal
+from derive.program.tape import Number, number
 from derive.solve.principal import PrincipalAxes, principal_axes
 
 Rows = list[list[float]]
@@ -95,6 +98,18 @@ def test_the_moment_of_a_thin_rod_about_itself_keeps_its_relative_accuracy(ratio
     right = moments_of(tensor_of(1.0, 1.0 + ratio / 3, ratio, 0.1, ratio / 7, ratio / 9))
     for found, exact in zip(axes.moments, right, strict=True):
         assert abs(mpf(found) / exact - 1) <= MOMENTS
+
+
+@pytest.mark.parametrize("small", [5e-324, 1e-155, 2e-16])
+def test_tiny_products_are_turned_away_by_short_numbers(small: float) -> None:
+    tensor = tensor_of(1.0, 2.0, 3.0, small, small, small)
+    assert are_found(tensor, 3.0)
+    every = [1, 2, 3, *[small] * 3, *(i == k for i in range(3) for k in range(3))]
+    values: list[Number] = [number(Fraction(x)) for x in every]
+    for _ in range(diagonal.PASSES):
+        values = diagonal._pass(values)
+    longest = max((x.exact or Fraction(0)).denominator.bit_length() for x in values)
+    assert longest <= diagonal.NOTHING + diagonal.BITS + 1
 
 
 def test_a_sphere_has_any_axes_and_one_moment() -> None:

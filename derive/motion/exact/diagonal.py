@@ -18,6 +18,7 @@ from derive.program.recorded import repeat
 from derive.program.tape import Number, number
 
 BITS = 192  # kept of an exact root, and of exact numbers from turn to turn
+NOTHING = 4608  # bits below the size of a tensor, of whose doubles no square is below 2^-4196
 PASSES = 8  # over the three pairs of axes; six reach 2^-106 from any tensor tried
 TURNS = ((0, 1, 2), (0, 2, 1), (1, 2, 0))
 
@@ -96,7 +97,10 @@ def _turned_to_principal(
 def _shortened(x: Number) -> Number:
     if x.exact is None or not x.exact:
         return x
-    unit = Fraction(2) ** (BITS + x.exact.denominator.bit_length() - x.exact.numerator.bit_length())
+    below = x.exact.denominator.bit_length() - x.exact.numerator.bit_length()
+    if below > NOTHING:
+        return number(0)
+    unit = Fraction(2) ** (BITS + below)
     return number(round(x.exact * unit) / unit)
 
 
