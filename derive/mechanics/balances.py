@@ -101,6 +101,11 @@ class Balances:
             return self.enforced
         return (*self.enforced, *self.spanning)
 
+    @property
+    def in_any_axes(self) -> tuple[ValuedBalance, ...]:
+        """Return balances of single bodies in all axes, where those in their own do not tell."""
+        return self.alone if self.telling != self.enforced else ()
+
     def about(
         self, bodies: tuple[str, ...], place: Located, *frames: str
     ) -> Iterator[ValuedBalance]:

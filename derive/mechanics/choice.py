@@ -45,7 +45,10 @@ def chosen(balances: Balances, wanted: frozenset[int], hard: Sequence[Probe] = (
         raise SceneError(undetermined(balances, wanted))
     found = None
     if balances.held:
-        found = _first(balances, *_of_constraints(balances, wanted), hard)
+        found = _first(balances, *_of_constraints(balances, balances.telling, wanted), hard)
+        if found is None and hard:
+            rows = [*balances.telling, *balances.in_any_axes]
+            found = _first(balances, *_of_constraints(balances, rows, wanted), hard)
     elif len(balances.frames.machine.bodies) > FEW_BODIES and not balances.single:
         of = outboard(balances)
         rows = _plainest_first(balances, of)
@@ -63,12 +66,12 @@ def chosen(balances: Balances, wanted: frozenset[int], hard: Sequence[Probe] = (
 
 
 def _of_constraints(
-    balances: Balances, wanted: frozenset[int]
+    balances: Balances, rows: Sequence[ValuedBalance], wanted: frozenset[int]
 ) -> tuple[Sequence[ValuedBalance], Sequence[frozenset[int]]]:
-    """Return the rows of a machine with constraints, and sets of unknowns: few, then all."""
+    """Return rows of a machine with constraints, and sets of unknowns: few, then all."""
     few = frozenset(k for row in balances.enforced for k in row.holds)
-    every = frozenset(k for row in balances.telling for k in row.holds)
-    return balances.telling, [own for own in (few, every) if wanted <= own]
+    every = frozenset(k for row in rows for k in row.holds)
+    return rows, [own for own in (few, every) if wanted <= own]
 
 
 def _plainest_first(balances: Balances, rows: Iterable[ValuedBalance]) -> list[ValuedBalance]:

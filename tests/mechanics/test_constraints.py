@@ -177,3 +177,39 @@ def test_virtual_power_is_needed_for_a_generalized_force(monkeypatch: pytest.Mon
     monkeypatch.setattr(enforced.Partials, "by", _without_factor(enforced.Partials.by))
     with pytest.raises((SceneError, ValueError)):
         made(TEXTS["sleigh"])
+
+
+SLOPE = """
+wanted = ["accelerations", "N", "grip_x"]
+parameters.m = { unit = "kg", range = [1, 2] }
+parameters.r = { unit = "m", range = [0.2, 0.3] }
+parameters.beta = { unit = "rad", range = [0.1, 0.5] }
+coordinates.x = { unit = "m", range = [-5, 5] }
+coordinates.q = { unit = "rad", range = [-6, 6] }
+frames.plane = { turned = ["z -beta"] }
+frames.disc = { parent = "plane", origin = ["x", "r", "0"], turned = ["z -q"] }
+bodies.disc = { frame = "disc", shape = "disc", axis = "z", radius = "r", mass = "m" }
+loads.weight = { gravity = ["0", -9.81, "0"] }
+[loads.ground]
+on = "disc"
+frame = "plane"
+at = ["x", "0", "0"]
+force = ["0", "?N", "?side"]
+couple = ["?tilt", "?turn", "0"]
+[constraints.grip]
+on = "disc"
+frame = "plane"
+at = ["x", "0", "0"]
+along = "plane"
+equal = "velocities"
+axes = ["x"]
+"""
+
+
+@pytest.mark.parametrize("q", [0.0, 1.5707963267948966, 4.0])
+def test_what_a_disc_presses_on_a_slope_is_told_in_axes_that_do_not_turn_with_it(q: float) -> None:
+    found = answered(SLOPE, {"m": 1.5, "r": 0.25, "beta": 0.3, "q": q})
+    weight, slope = 1.5 * 9.81, mpf(0.3)
+    assert found["x_ddot"] == pytest.approx(float(2 / mpf(3) * mpf("9.81") * sin(slope)), rel=1e-14)
+    assert found["N"] == pytest.approx(weight * float(cos(slope)), rel=1e-14)
+    assert found["grip_x"] == pytest.approx(-weight / 3 * float(sin(slope)), rel=1e-14)
