@@ -1,6 +1,6 @@
 """Steps of a machine with constraints: what they are brought back onto, and what moves for that."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from typing import Any, Protocol
 
@@ -37,11 +37,14 @@ def on_constraints(setting: Setting, step: Program) -> Program:
         rule = "is of machines without constraints, which a step is brought back onto"
         raise SceneError(f"'{step.name}' {rule}; step_rk4_jacobian is of these, too")
     states = [c for q in setting.terms.vocabulary.states for c in q.components]
-    return held_step(step, states, homing_of(setting.terms, setting.rates[DISTANCES]))
+    held = homing_of(setting.terms, setting.rates[DISTANCES], setting.tape.held)
+    return held_step(step, states, held)
 
 
-def homing_of(of: OfMachine, distances: Program) -> Homing:
+def homing_of(of: OfMachine, distances: Program, constants: Iterable[str]) -> Homing:
     """Return what vanishes where the constraints hold, without what is redundant, and what moves.
+
+    constants : the names of all that set-up makes
 
     Places that formulas of time alone move are where they are meant to be.
     """
@@ -65,6 +68,6 @@ def homing_of(of: OfMachine, distances: Program) -> Homing:
               isinstance(c.rate, Formula) and speeds & {*symbols(c.rate)})]  # fmt: skip
     driving = [c.rate.name for c in scene.coordinates if c.free and isinstance(c.rate, Input)]
     driving += [s.name for s in scene.speeds if s.free]
-    return Homing(distances, tuple(places), tuple(rates),
-                weights(moving), weights(driving), PASSES if found.curved else 1,
-                tuple(q.components for q in states if q.is_quaternion))  # fmt: skip
+    attitudes = tuple(q.components for q in states if q.is_quaternion)
+    return Homing(distances, tuple(places), tuple(rates), weights(moving), weights(driving),
+                  PASSES if found.curved else 1, attitudes, frozenset(constants))  # fmt: skip

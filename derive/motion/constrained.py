@@ -34,6 +34,7 @@ class Homing:
     moving  : states that places are changed by, each with the square of its range
     driving : the same of rates                      attitudes : the quaternions among the states
     passes  : corrections of rates, one where conditions are linear in them
+    taken   : the constants of the scene, which a function may not read and C prints by name
     """
 
     program: Program
@@ -43,6 +44,7 @@ class Homing:
     driving: Mapping[str, Fraction]
     passes: int
     attitudes: tuple[tuple[str, ...], ...]
+    taken: frozenset[str]
 
 
 def held_step(step: Program, states: Sequence[str], held: Homing) -> Program:
@@ -116,7 +118,7 @@ def reaches(states: Sequence[Quantity], held: Homing) -> list[set[str]]:
 def _tape(step: Program, held: Homing) -> Tape:
     """Return a tape whose names are none of the step's, nor of what vanishes."""
     programs = (step, held.program)
-    taken = {op.result for p in programs for op in p.ops if isinstance(op, Op)}
+    taken = {*held.taken, *(op.result for p in programs for op in p.ops if isinstance(op, Op))}
     taken |= {name for p in programs for name in operands_of(p.ops, p.results)}
     taken |= {c for p in programs for q in p.inputs for c in q.components}
     return Tape(free_prefix("k", taken))

@@ -164,6 +164,38 @@ def test_a_sled_keeps_to_its_blade_and_a_start_beside_it_is_refused(tmp_path: Pa
         own.simulate(start | {"y_dot": -0.5445}, 1, 0.01)
 
 
+KNIFE = """
+wanted = ["step_rk4", "energy"]
+parameters.m = { unit = "kg", range = [1, 2] }
+parameters.J = { unit = "kg m^2", range = [0.1, 0.2] }
+coordinates.x = { unit = "m", range = [-5, 5] }
+coordinates.y = { unit = "m", range = [-5, 5] }
+coordinates.q = { unit = "rad", range = [-3, 3] }
+frames.plane = { turned = ["x 0.3"] }
+frames.blade = { parent = "plane", origin = ["x", "y", "0"], turned = ["z q"] }
+bodies.blade = { frame = "blade", kind = "axisymmetric", axis = "z", axial = "J", transverse = "J", mass = "m" }
+loads.weight = { gravity = ["0", "0", -9.81] }
+loads.ice = { on = "blade", force = ["0", "0", "?N"], couple = ["?a", "?b", "0"] }
+constraints.edge.zero = "y_dot*cos(q) - x_dot*sin(q)"
+"""  # noqa: E501
+
+
+def test_an_edge_slides_on_a_slope_as_in_its_closed_form_beside_constants_of_other_functions(
+    tmp_path: Path,
+) -> None:
+    at = tmp_path / "knife.toml"
+    at.write_text(KNIFE, encoding="utf-8")
+    own, turn, pull = derive.load(str(at)), 2.0, 9.81 * np.sin(0.3)
+    start = {"m": 1.5, "J": 0.15, "x": 0, "y": 0, "q": 0, "x_dot": 0, "y_dot": 0, "q_dot": turn}
+    motion = own.simulate(start, 1, 0.002)
+    assert motion.left[0][1] < ROUNDED
+    # its speed along itself is pull/turn (cos(turn t) - 1)
+    along = 0.5 + np.sin(2 * turn) / (4 * turn) - np.sin(turn) / turn
+    aside = np.sin(turn) ** 2 / (2 * turn) + (np.cos(turn) - 1) / turn
+    assert motion.states["x"][-1] == pytest.approx(pull / turn * along, abs=1e-9)
+    assert motion.states["y"][-1] == pytest.approx(pull / turn * aside, abs=1e-9)
+
+
 @pytest.mark.parametrize(("wanted", "says"), [
     ("step_rk4_sensitivity", "'step_rk4_sensitivity' is of machines without constraints"),
     ("constraint_distance", r"which is no answer \(did you mean 'constraint_distances'"),

@@ -55,7 +55,7 @@ def closing_of(library: Library, varied: Collection[str]) -> Closing:
     }
     if not library.scene.constraints:
         return Closing(tuple(turned), moved=tuple(c for own in turned.values() for c in own))
-    held = homing_of(library, library[DISTANCES])
+    held = homing_of(library, library[DISTANCES], library.constants)
     size = {c: (q.ends[1] - q.ends[0]) ** 2 for q in states for c in q.components}
     each = {PLACES: replace(held, rates=(), moving=_weighed(held.moving, size)),
             RATES: replace(held, places=(), driving=_weighed(held.driving, size))}  # fmt: skip
