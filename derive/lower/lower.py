@@ -3,11 +3,12 @@
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
 
-from sympy import Add, Expr, Mul, Pow, Rational, Symbol, cos, pi, sin, tan
+from sympy import Abs, Add, Expr, Mul, Pow, Rational, Symbol, cos, pi, sin, tan
 
 from derive.lower.arrange.arrangement import Arrangement, Definition
 from derive.lower.derivative import RULES
 from derive.lower.graph import Graph, Value
+from derive.scene import SceneError
 
 
 def lower(graph: Graph, arrangement: Arrangement, leaves: Mapping[Symbol, Value]) -> list[Value]:
@@ -47,6 +48,9 @@ def value_of(graph: Graph, e: Expr, known: Mapping[Symbol, Value]) -> Value:
             return graph.power(value_of(graph, e.base, known), int(n))
         case Pow(exp=n) if n.is_Rational and n.q == 2:
             return graph.power(graph.call("sqrt", value_of(graph, e.base, known)), int(n.p))
+        case Abs():
+            rule = "its ends must not pass each other in the declared ranges"
+            raise SceneError(f"a spring along one line has a length with a sign: {rule}")
         case tan():
             angle = value_of(graph, e.args[0], known)
             return graph.mul([graph.call("sin", angle), graph.power(graph.call("cos", angle), -1)])

@@ -2,14 +2,18 @@
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
 
 from sympy import Expr, Integer, Matrix, Rational, Symbol, sqrt
 
 from derive.lecture.stated import by_law
 from derive.mechanics.bodies import centre, inertia_tensor, mass
+from derive.mechanics.box import ranges
 from derive.mechanics.frames import ZERO, Frames, Located
 from derive.mechanics.meeting import ends
 from derive.mechanics.probe import NOTHING, at_rest, random_probe, vanishes
+from derive.mechanics.sweep import Sweep, weakest
 from derive.scene import SceneError
 from derive.scene.machine import INERTIAL, Force, Gradient, Load, Spring, Weight
 
@@ -91,14 +95,38 @@ def stretched(frames: Frames, load: Spring) -> tuple[Matrix, str]:
     return frames.sheet.column(f"{load.name}.d", frames.apart(start, end, top)), top
 
 
+def along_one_line(frames: Frames, d: Matrix) -> Expr | None:
+    """Return the length of a vector along one axis, whose sign is one on the declared ranges.
+
+    So its length has no root. None if it is along several, or vanishes on its way.
+    """
+    parts = [x for x in d if x != 0]
+    if len(parts) != 1:
+        return None
+    (one,), below = parts, frames.sheet.needed(parts)
+    box = replace(ranges(frames.words), onto=None)
+    least = (weakest(box, below, partial(_value, e)).least for e in (one, -one))
+    return next((e for e, low in zip((one, -one), least, strict=False) if low >= 0), None)
+
+
+def _value(e: Expr, at: Sweep) -> Any:
+    return at.of(e)[0]
+
+
+def _length(frames: Frames, d: Matrix) -> Expr:
+    one = along_one_line(frames, d)
+    return sqrt((d.T * d)[0]) if one is None else one
+
+
 def _spring(frames: Frames, load: Spring) -> Iterator[Wrench]:
     words, sheet = frames.words, frames.sheet
     d, top = stretched(frames, load)
     k, c, rest = (words.expression(f) for f in (load.stiffness, load.damping, load.length))
     force: Matrix = k * d
     if rest != 0 or c != 0:
-        _require_length(frames, load, (d.T * d)[0])
-        size = sheet.named(f"{load.name}.length", sqrt((d.T * d)[0]))
+        if along_one_line(frames, d) is None:
+            _require_length(frames, load, (d.T * d)[0])
+        size = sheet.named(f"{load.name}.length", _length(frames, d))
         force = force - (k * rest / size) * d
         opening = sum((x * v for x, v in zip(d, sheet.rate_of_column(d), strict=True)), Integer(0))
         force = force + (c * opening / size**2) * d
@@ -152,7 +180,7 @@ def potential_energy(frames: Frames) -> Expr:
             k, rest = (frames.words.expression(f) for f in (load.stiffness, load.length))
             _keeps(frames, load.name, "stiffness and length", [k, rest])
             square = (d.T * d)[0]
-            size = sqrt(square) if rest != 0 else Integer(0)
+            size = _length(frames, d) if rest != 0 else Integer(0)
             total += Rational(1, 2) * k * (square - 2 * rest * size + rest**2)
     return total
 

@@ -9,7 +9,7 @@ from dataclasses import fields, is_dataclass
 from sympy import Abs, Dummy, Expr, Symbol, sqrt
 
 from derive.mechanics.frames import Frames
-from derive.mechanics.loads import stretched
+from derive.mechanics.loads import along_one_line, stretched
 from derive.scene.formula import ZERO, Formula, symbols
 from derive.scene.machine import Spring
 
@@ -20,10 +20,25 @@ def signs_taken(frames: Frames) -> Iterator[str]:
     for load in machine.loads:
         if isinstance(load, Spring) and (load.length != ZERO or load.damping != ZERO):
             d, _ = stretched(frames, load)
-            yield from _sentence(frames, (d.T * d)[0], f"the length of {load.name}")
+            if says := _line(frames, along_one_line(frames, d), f"the length of {load.name}"):
+                yield says
+            else:
+                yield from _sentence(frames, (d.T * d)[0], f"the length of {load.name}")
     known = {*words.vocabulary.symbols, *words.vocabulary.numbers, "pi"}
     for formula in dict.fromkeys(f for f in _roots(machine) if {*symbols(f)} <= known):
         yield from _sentence(frames, words.expression(formula.operands[0]), str(formula))
+
+
+def _line(frames: Frames, length: Expr | None, what: str) -> str:
+    """Return a sentence on a length that is no symbol, "" for others."""
+    named = frames.sheet.definitions
+    while length is not None and length.free_symbols & named.keys():
+        length = length.xreplace(named)
+    if length is None or length.is_Symbol:
+        return ""
+    made = length.xreplace({s: Symbol(frames.words.sheet.label(s)) for s in length.free_symbols})
+    text = str(made).replace("**", "^")
+    return f"Taken: {what} is {text}, which is above 0 in the declared ranges."
 
 
 def _sentence(frames: Frames, square: Expr, what: str) -> Iterator[str]:

@@ -3,6 +3,7 @@
 import json
 
 import pytest
+from flint import arb
 from sympy import Symbol
 
 from derive.emit.c.source import c_files
@@ -12,7 +13,8 @@ from derive.emit.page.scene import scene_page
 from derive.library.library import Library, library
 from derive.lower.arrange.tidy import primitive
 from derive.mechanics.problem import Problem
-from derive.scene import parse_scene
+from derive.scene import SceneError, parse_scene
+from derive.verify.measure import results
 
 BEAD = """
 wanted = ["state_rate", "energy"]
@@ -31,6 +33,8 @@ rail = {{ on = "bead", force = [0, "?y", "?z"], couple = "?guide" }}
 """
 TAKEN = "Taken: the length of spring is x, while x > 0 as in the declared range."
 
+LINE = "Taken: the length of spring is {}, which is above 0 in the declared ranges."
+
 
 def bead(low: float, place: str = "x") -> Library:
     return library(parse_scene(BEAD.format(low=low, place=place), "bead"))
@@ -48,13 +52,26 @@ def test_a_length_taken_without_its_sign_is_said_in_the_header_json_page_and_equ
 @pytest.mark.parametrize(
     ("low", "place", "says"),
     [
-        (-0.1, "x + l", ()),
+        (-0.1, "x + l", (LINE.format("l + x"),)),
         (0.1, "sqrt(x^2)", (TAKEN, "Taken: sqrt(x^2) is x, while x > 0 as in the declared range.")),
-        (0.1, "x + l", ()),
+        (0.1, "x - 5*l", (LINE.format("5*l - x"),)),
     ],
 )  # fmt: skip
 def test_signs_are_said_where_they_are_taken_and_nowhere_else(low, place, says) -> None:
     assert bead(low, place).mechanism.signs == says
+
+
+def test_a_spring_along_one_line_pushes_whichever_side_its_other_end_is_on() -> None:
+    made = bead(0.1, "x - 5*l")
+    at = {"k": 20, "l": arb(0.125), "x": arb(0.25), "x_dot": 0}
+    found = results(made, made["state_rate"], {n: arb(x) for n, x in at.items()})
+    assert float(found["x_dot_rate"]) == 20 * ((0.625 - 0.25) - 0.2)  # drawn to 5 l, mass 1
+
+
+def test_a_spring_whose_ends_pass_each_other_is_refused() -> None:
+    rule = "a spring along one line has a length with a sign: its ends must not pass each other"
+    with pytest.raises(SceneError, match=rule):
+        bead(0.1, "x - l")
 
 
 def test_a_spring_is_told_with_its_ends_and_its_length_at_rest() -> None:
