@@ -42,6 +42,21 @@ class Box:
         inside = np.all((low <= found[:, places]) & (found[:, places] <= high), axis=1)
         return np.asarray(found[fits & inside])
 
+    def fulfilling(self, here: NDArray[Any]) -> NDArray[Any] | None:
+        """Return the point nearest to one at which the constraints hold; None if none is found.
+
+        From that point itself no way may lead onto them, as where slopes vanish. Data are kept.
+        """
+        if self.onto is None:
+            return here
+        every: dict[int, float] = {**self.onto.places, **self.onto.rates}
+        trials, columns = self.trials(), [*every]
+        points = np.tile(here, (len(trials), 1))
+        points[:, columns] = trials[:, columns]
+        found = self.brought(points)
+        off = np.abs(found - here)[:, columns] / np.array([*every.values()])
+        return np.asarray(found[np.argmin(off.max(axis=1))]) if len(found) else None
+
     def outside(self, point: NDArray[Any], places: Iterable[int]) -> str:
         """Return words for the first place beyond its range, "" if there is none."""
         for k in places:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from typing import Any, TypeVar
 
+from numpy.typing import NDArray
 from sympy import Expr, Integer, Pow
 
 from derive.mechanics.answers import Answers
@@ -140,6 +141,10 @@ class Mechanism:
     def doubts_at(self, given: Mapping[str, float]) -> tuple[str, ...]:
         """Return warnings that take a scene's equations to be found, where these values are set."""
         return tuple(unsteady(self.scene, self.answers.balances, given))
+
+    def fulfilling(self, here: NDArray[Any]) -> NDArray[Any] | None:
+        """Return the values of all that is given at which the constraints hold, nearest to some."""
+        return ranges(self.words).fulfilling(here)
 
     def pole(self, base: str) -> str:
         """Return words on what a function divides by that vanishes in its ranges, "" if nothing."""

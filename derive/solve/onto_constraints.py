@@ -39,9 +39,9 @@ def start_on_constraints(
         name, value = brings.worst(here)
         rule = f"a motion must begin where {name} is 0, not {value:.4g}"
         more = "no state nearby fulfils all of them"
-        if fits:
-            each = (f"{n}={there[names.index(n)]:.9g}" for n in far)
-            more = f"a state nearby that fulfils all is {', '.join(each)}"
+        if (state := there if fits else found.library.mechanism.fulfilling(here)) is not None:
+            each = (f"{n}={state[names.index(n)]:.9g}" for n in far)
+            more = f"a state {'nearby ' * bool(fits)}that fulfils all is {', '.join(each)}"
         raise SceneError(f"{label}: {rule}; {more}")
     units = {c: q.unit for q in found.quantities() for c in q.components}
     doubts = [
@@ -61,8 +61,10 @@ def held_example(library: Library, given: Mapping[str, str]) -> dict[str, str]:
         return dict(given)
     here = _values_given(brings, names, given)
     (there,), (fits,) = brings.brought(here[None, :])
+    if (there := there if fits else library.mechanism.fulfilling(here)) is None:
+        return dict(given)
     moved = [n for n, k, size in _free_in_time(brings, names)
-             if fits and abs(there[k] - here[k]) > ROUNDED * size]  # fmt: skip
+             if abs(there[k] - here[k]) > ROUNDED * size]  # fmt: skip
     return dict(given) | {n: f"{there[names.index(n)]:.9g}" for n in moved}
 
 
