@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cached_property
 from random import Random
 from typing import Any
 
@@ -41,6 +42,11 @@ class Box:
         low, high = (self.low - spare)[places], (self.high + spare)[places]
         inside = np.all((low <= found[:, places]) & (found[:, places] <= high), axis=1)
         return np.asarray(found[fits & inside])
+
+    @cached_property
+    def tried(self) -> NDArray[Any]:
+        """Return the points of the ranges that are looked at first, on the constraints."""
+        return self.brought(self.trials())
 
     def fulfilling(self, here: NDArray[Any]) -> NDArray[Any] | None:
         """Return the point nearest to one at which the constraints hold; None if none is found.

@@ -17,7 +17,10 @@ from derive.mechanics.onto import Doubles
 
 CLEAR = 0.02
 """Of the largest slope of a condition that is left: a pivot nowhere smaller may be divided by."""
+NOISE = 1e-12  # what an elimination leaves of a slope that it takes out
+MOST_AT_ONCE = 4096  # pivots that are valued together
 ONE = Symbol("one")
+Places = tuple[int, ...]
 LinearSum = dict[Symbol, Expr]
 """A sum of accelerations times factors; what holds none stands with the symbol of one."""
 
@@ -34,7 +37,7 @@ class HeldCondition:
 class Elimination:
     """Conditions, by their places, that are solved together for as many accelerations."""
 
-    rows: tuple[int, ...]
+    rows: Places
     unknowns: tuple[Symbol, ...]
 
 
@@ -171,9 +174,7 @@ def pivots_of(
     rows, columns = [*range(left.shape[1])], [*range(left.shape[2])]
     while rows:
         for size in sizes:
-            each = product(combinations(rows, size), combinations(columns, size))
-            parts = [(_smallest(left, *own), own) for own in each]
-            least, (r, c) = max(parts, key=lambda part: part[0], default=(0.0, ((), ())))
+            least, (r, c) = _clearest(left, rows, columns, size)
             if least > CLEAR:
                 break
         else:
@@ -185,6 +186,29 @@ def pivots_of(
     return tuple(found)
 
 
+def _clearest(
+    left: Doubles, rows: Sequence[int], columns: Sequence[int], size: int
+) -> tuple[float, tuple[Places, Places]]:
+    """Return the pivot that is largest where it is smallest, and its conditions and unknowns."""
+    used = np.any(np.abs(left) > NOISE, axis=0)
+    each = [(r, c) for r in combinations(rows, size) for c in _held_by(used, r, columns)]
+    best: tuple[float, tuple[Places, Places]] = (0.0, ((), ()))
+    for n in range(0, len(each), MOST_AT_ONCE):
+        some = each[n : n + MOST_AT_ONCE]
+        sizes = _sized(left, [r for r, _ in some], [c for _, c in some])
+        low, high = np.min(sizes, axis=0), np.max(sizes, axis=0)
+        least = np.where(low * high > 0, np.min(np.abs(sizes), axis=0), 0.0)
+        if least[k := int(np.argmax(least))] > best[0]:
+            best = float(least[k]), some[k]
+    return best
+
+
+def _held_by(used: Doubles, rows: Places, columns: Sequence[int]) -> Iterable[Places]:
+    """Return as many unknowns as there are conditions, each held by a condition of its own."""
+    own = ([k for k in columns if used[r, k]] for r in rows)
+    return sorted({tuple(sorted(c)) for c in product(*own) if len({*c}) == len(rows)})
+
+
 def pivot_sizes(
     slopes: Doubles, unknowns: Sequence[Symbol], pivots: Sequence[Elimination]
 ) -> Doubles:
@@ -193,7 +217,8 @@ def pivot_sizes(
     rows = [*range(left.shape[1])]
     for pivot in pivots:
         columns = [unknowns.index(u) for u in pivot.unknowns]
-        found = np.minimum(found, np.abs(_sized(left, pivot.rows, columns)))
+        sizes = _sized(left, [pivot.rows], [tuple(columns)])
+        found = np.minimum(found, np.abs(sizes[:, 0]))
         rows = [k for k in rows if k not in pivot.rows]
         left = _eliminated(left, pivot.rows, columns, rows)
     return found
@@ -209,14 +234,9 @@ def _eliminated(
     return found
 
 
-def _smallest(left: Doubles, rows: Sequence[int], columns: Sequence[int]) -> float:
-    """Return the smallest pivot at any point, 0 if its sign changes on the way."""
-    each = _sized(left, rows, columns)
-    return float(np.min(np.abs(each))) if np.min(each) * np.max(each) > 0 else 0.0
-
-
-def _sized(left: Doubles, rows: Sequence[int], columns: Sequence[int]) -> Doubles:
-    """Return pivots at all points, beside the largest slopes of their conditions."""
-    size = np.prod(np.max(np.abs(left[:, rows]), axis=2), axis=1)
-    pivot: Doubles = np.linalg.det(left[:, rows][:, :, columns])
+def _sized(left: Doubles, rows: Sequence[Places], columns: Sequence[Places]) -> Doubles:
+    """Return pivots (points, pivots), beside the largest slopes of their conditions."""
+    r, c = np.array(rows, int), np.array(columns, int)
+    size = np.prod(np.max(np.abs(left), axis=2)[:, r], axis=2)
+    pivot: Doubles = np.linalg.det(left[:, r[:, :, None], c[:, None, :]])
     return pivot / np.where(size > 0, size, np.inf)

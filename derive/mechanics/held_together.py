@@ -41,7 +41,7 @@ def held_together(mechanism: Mechanism, sought: frozenset[Symbol]) -> HeldWays:
     sheet = mechanism.answers.frames.sheet
     free = frozenset(sheet.symbols[m.unknown] for m in mechanism.scene.moving if m.free)
     machine = links(mechanism.answers.frames, free)
-    if machine is None or not machine.links or machine.free != free or machine.drives:
+    if machine is None or machine.free != free or machine.drives:
         return
     rows = []
     for c in mechanism.held.kept:
@@ -147,4 +147,4 @@ def _vanish(
     def measure(found: Sweep) -> Doubles:
         return pivot_sizes(matrices(found, entries), *chosen)
 
-    return weakest(box, before, measure, CLEAR / 2).vanishes
+    return weakest(box, before, measure, CLEAR / 2, enough=CLEAR / 2).vanishes

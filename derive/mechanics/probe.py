@@ -150,10 +150,12 @@ def solved(rows: Sequence[Sequence[Any]], right: Sequence[Any]) -> list[Any]:
             pivot = augmented[k]
             if small(pivot[k], 1):
                 raise ZeroDivisionError
-            pivot[:] = [x / pivot[k] for x in pivot]
+            pivot[:] = [x / pivot[k] if x else x for x in pivot]
+            live = [j for j, x in enumerate(pivot) if x]
             for row in augmented:
-                if row is not pivot and row[k]:
-                    row[:] = [x - row[k] * p for x, p in zip(row, pivot, strict=True)]
+                if row is not pivot and (factor := row[k]):
+                    for j in live:
+                        row[j] -= factor * pivot[j]
         return [row[-1] for row in augmented]
 
 

@@ -106,7 +106,7 @@ def reaches_of(of: Box, definitions: Mapping[Symbol, Expr]) -> dict[Symbol, floa
     What moves has the size of its range; sizes of what is named upon it multiply from one to the
     next, and come to exceed by far whatever it can be.
     """
-    found = sweep_at(of, of.brought(of.trials()), definitions)
+    found = sweep_at(of, of.tried, definitions)
     return {s: float(np.max(np.nan_to_num(abs(found.values[s][0])), initial=0.0))
             for s in definitions}  # fmt: skip
 
@@ -158,8 +158,12 @@ def weakest(
     measure: Callable[[Sweep], Any],
     bound: float = LEAST,
     reaches: Mapping[Symbol, float] | None = None,
+    enough: float = -np.inf,
 ) -> Weakest:
-    """Return the smallest value of a measure on the ranges that points and a search find."""
+    """Return the smallest value of a measure on the ranges that points and a search find.
+
+    enough : what is not above it is found without looking for less
+    """
 
     def at(points: NDArray[Any]) -> NDArray[Any]:
         with np.errstate(all="ignore"):
@@ -168,25 +172,30 @@ def weakest(
         sizes: NDArray[Any] = np.nan_to_num(every, nan=0.0)
         return sizes
 
-    points = of.brought(of.trials())
+    points = of.tried
     if not len(points):
         return Weakest(1.0, {}, bound)
     sizes = at(points)
     order = np.argsort(sizes, kind="stable")[:STARTS]
     best = (float(sizes[order[0]]), points[order[0]])
-    if best[0] < LOW:
-        best = min((_followed(of, at, points[n], float(sizes[n])) for n in order),
+    for n in order if enough < best[0] < LOW else ():
+        best = min(best, _followed(of, at, (points[n], float(sizes[n])), enough),
                    key=lambda found: found[0])  # fmt: skip
+        if best[0] <= enough:
+            break
     return Weakest(best[0], dict(zip(of.names, map(float, best[1]), strict=True)), bound)
 
 
 def _followed(
-    of: Box, at: Callable[[NDArray[Any]], NDArray[Any]], here: NDArray[Any], size: float
-) -> tuple[float, NDArray[Any]]:
+    of: Box, at: Callable[[NDArray[Any]], NDArray[Any]], start: tuple[NDArray[Any], float],
+    enough: float,
+) -> tuple[float, NDArray[Any]]:  # fmt: skip
     """Return the smallest value near a point, by steps along every component, ever shorter."""
-    step, width = 0.25, of.high - of.low
+    (here, size), step, width = start, 0.25, of.high - of.low
     sides = np.vstack([np.diag(width), -np.diag(width)])
     for turn in range(ROUNDS):
+        if size <= enough:
+            break
         around = of.brought(np.clip(here + step * sides, of.low, of.high))
         sizes = at(around) if len(around) else np.array([size])
         n = int(np.argmin(sizes))

@@ -12,7 +12,7 @@ from sympy import Expr, Function, Matrix, Symbol, cos, sin, tan
 from derive.mechanics.box import Box, ranges
 from derive.mechanics.probe import DIGITS, Probe, random_probe
 from derive.mechanics.sheet import below
-from derive.mechanics.sweep import Sweep, Weakest, matrices, reaches_of, sweep_at, weakest
+from derive.mechanics.sweep import LEAST, Sweep, Weakest, matrices, reaches_of, sweep_at, weakest
 from derive.mechanics.words import Words
 from derive.scene import SceneError
 
@@ -51,7 +51,7 @@ class Pivots:
 
     def vanish(self, matrix: Matrix, places: Sequence[MatrixEntry]) -> bool:
         """Tell whether some pivot vanishes, taken one after another at (row, column)."""
-        return self._weakest(matrix, places).vanishes
+        return self._weakest(matrix, places, LEAST).vanishes
 
     def chosen(self, matrix: Matrix, unknowns: Sequence[Symbol], left: int) -> list[MatrixEntry]:
         """Return (row, column) of the pivots to take until so many rows are ``left``.
@@ -68,19 +68,19 @@ class Pivots:
             rows.remove(r)
             columns.remove(c)
             A = _eliminated(A, r, c)
-        worst = self._weakest(matrix, taken)
+        worst = self._weakest(matrix, taken, -np.inf)
         if worst.vanishes:
             names = ", ".join(f"'{self.label(u)}'" for u in unknowns)
             raise SceneError(f"a divisor of {names} vanishes {worst.where}")
         return taken
 
-    def _weakest(self, matrix: Matrix, places: Sequence[MatrixEntry]) -> Weakest:
+    def _weakest(self, matrix: Matrix, places: Sequence[MatrixEntry], enough: float) -> Weakest:
         """Return the weakest pivot beside sizes of terms; if it seems to vanish, beside reaches."""
         below, measure = self._below(matrix), self._measure(matrix, places)
-        found = weakest(self.ranges, below, measure)
+        found = weakest(self.ranges, below, measure, enough=enough)
         if found.vanishes and below:
             reaches = reaches_of(self.ranges, below)
-            found = weakest(self.ranges, below, measure, reaches=reaches)
+            found = weakest(self.ranges, below, measure, reaches=reaches, enough=enough)
         return found
 
     def _below(self, matrix: Matrix) -> Mapping[Symbol, Expr]:

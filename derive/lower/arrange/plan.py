@@ -40,6 +40,7 @@ from derive.mechanics.by_links import by_links
 from derive.mechanics.mechanism import Mechanism
 from derive.mechanics.problem import Problem
 from derive.mechanics.vocabulary import Vocabulary
+from derive.scene import SceneError
 
 OF_COLUMNS: tuple[ColumnRule, ...] = (turns_one_by_one, turned_by_quaternion, spherical_part)
 OF_ANSWERS: tuple[ColumnRule, ...] = (quaternion_rate,)
@@ -48,6 +49,8 @@ OF_BLOCKS: tuple[BlockRule, ...] = (constant_tensor, constant_coefficients)
 LONGEST_ROW = (
     400  # terms of a balance: beyond, it is not solved as it stands if there is another way
 )
+MOST_UNKNOWNS = 13
+"""Of balances of constraints, solved as they stand if there is another way: as Peaucellier's."""
 MOST_TERMS = 60  # of a named quantity that rules have found; its users may multiply it out
 
 
@@ -73,10 +76,17 @@ def arrange(mechanism: Mechanism, problem: Problem) -> tuple[Arrangement, ...]:
         Arrangement(_cut(way, lean.unknowns), answers, how, implied)
         for how, way, implied in by_links(own, problem.name)
     )
-    if recursive and _longest(lean) > LONGEST_ROW:
+    many = own.scene.constraints and len(lean.unknowns) > MOST_UNKNOWNS
+    if recursive and (many or _longest(lean) > LONGEST_ROW):
         return recursive
     ways = (Way(lean), _ruled(own, lean), _written_out(own, lean))
-    return tuple(dict.fromkeys((*(_arranged(own, way) for way in ways), *recursive)))
+    try:
+        plain = [_arranged(own, way) for way in ways]
+    except SceneError:
+        if not recursive:
+            raise
+        plain = []  # a pivot vanishes wherever it is taken, and masses have none that does
+    return tuple(dict.fromkeys((*plain, *recursive)))
 
 
 def _cut(way: Mapping[Symbol, Expr], unknowns: Iterable[Symbol]) -> tuple[Definition, ...]:
