@@ -53,15 +53,21 @@ class Interpreted:
         if parameters and (refused := self._refused(parameters)):
             return refused
         function = self.of_parameters if made is None else self.of_constants
-        before = [] if made is None else [made]
-        before += [np.vstack(np.broadcast_arrays(*parameters))] if parameters else []
-        results = function.call([casadi.DM(x) for x in (*before, *own)])
+        results = function.call([casadi.DM(x) for x in (*self._first(parameters, made), *own)])
         sparse = self.program.sparsity or {}
         for q, result, place in zip(self.program.outputs, results, found, strict=True):
             values = np.array(result.nonzeros() if q.name in sparse else result.full().T)
             rows = place.reshape(count, -1)
             rows[:] = values.reshape(-1, rows.shape[1])
         return None
+
+    def _first(self, parameters: Buffers, made: NDArray[Any] | None) -> Buffers:
+        """Return constants, or parameters, even none, from which they are made; or nothing."""
+        if made is not None:
+            return [made]
+        if not is_prepared(self.program):
+            return []
+        return [np.vstack(np.broadcast_arrays(*parameters)) if parameters else np.empty((0, 1))]
 
     def _refused(self, parameters: Buffers) -> Refused | None:
         columns = [p.ravel() for p in np.broadcast_arrays(*parameters)]

@@ -55,7 +55,7 @@ def _loop(library: Library, program: Program, precision: Precision) -> dict[str,
         "symbol": CNames(library.scene.name).symbol(program.name, precision),
         "prepared": is_prepared(program),
         "arguments": [*read[: len(own)], *found],
-        "parameters": read[len(own) :],
+        "prepares": [*read[len(own) :], "&own"],
         "varies": [f"step[{len(own) + place}] != 0" for place in range(len(parameters))],
     }
 

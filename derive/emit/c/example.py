@@ -15,8 +15,8 @@ def example(library: Library, names: CNames, precision: Precision) -> list[str]:
     program = library.printed()[0]
     lines = []
     if any(q.role == "constants" for q in program.inputs) and not library.fixed:
-        given = ", ".join(literal(_middle(q), precision) for q in library.setup.inputs)
-        call = f"{names.symbol('setup', precision)}({given}, &constants)"
+        given = [literal(_middle(q), precision) for q in library.setup.inputs]
+        call = f"{names.symbol('setup', precision)}({', '.join([*given, '&constants'])})"
         lines.append(f"{names.scene}_constants_{precision.name} constants;")
         lines.append(f"if ({call} != 0) {{ return 1; }}")
     arrays = [q for q in program.inputs if q.shape and q.role != "constants"]

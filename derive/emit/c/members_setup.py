@@ -36,6 +36,7 @@ def setup_definition(program: Program, scene: str, precision: Precision) -> str:
     lines = [
         f"{scene}_constants_{precision.name} own;",
         "ptrdiff_t k, refused = 0;",
+        *([] if any("stride" in line for line in loop) else ["(void)stride;"]),
         "for (k = 0; k < members; ++k) {",
         *within_braces(loop),
         "}",
