@@ -108,11 +108,15 @@ def as_made(made: Library, found: Files, source: str) -> Verdict:
     if found.origin == "made in memory":
         return Verdict(name, "all", "", check_, "skipped", "no files of the scene lie there")
     few = ["--samples", str(found.samples)] if found.samples != SAMPLING.samples else []
+    few += [f"--{part}" for part in found.parts]
     says = " ".join([f"{found.origin}: as made", *(["by", *few] if few else [])])
-    if found.differ:
-        command = visible(shlex.join(["derive", "generate", source, *few]))
-        says = f"not as made: {', '.join(found.differ)}; run `{command}`"
-    return Verdict(name, "all", "", check_, JUDGED[not found.differ], says)
+    if wrong := (*found.differ, *found.left):
+        again = ["derive", "generate", source, *few]
+        each = [again] if found.differ else []
+        each += [["rm", *found.left]] if found.left else []
+        commands = " and ".join(f"`{visible(shlex.join(command))}`" for command in each)
+        says = f"not as made: {', '.join(wrong)}; run {commands}"
+    return Verdict(name, "all", "", check_, JUDGED[not wrong], says)
 
 
 def proof(made: Library) -> Verdict:

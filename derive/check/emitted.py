@@ -1,6 +1,7 @@
 """The emitted files of a scene, compiled and loaded: what a user would run."""
 
 import json
+import shlex
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,10 +13,11 @@ import casadi
 from derive.check.call import CFunction, c_functions
 from derive.check.compiler import Compiler, compiled
 from derive.check.verdict import Outcome, Verdict
+from derive.emit.c.members_file import OVER_MEMBERS
 from derive.emit.casadi_module import imported
 from derive.emit.files import differences, scene_files
 from derive.emit.reported import lying_beside
-from derive.library.external import derivatives_of_step
+from derive.library.external import CASADI, derivatives_of_step
 from derive.library.library import Library
 from derive.program.precision import F64, PRECISIONS, Precision
 from derive.program.program import Program
@@ -34,12 +36,16 @@ class Files:
 
     differ : files that lie there and are not what the scene makes
     samples : of the ranges, that each stated error was looked for at
+    parts   : what was asked for beside the usual files
+    left    : files that lie there and no scene makes
     """
 
     texts: Mapping[str, str]
     origin: str
     differ: tuple[str, ...] = ()
     samples: int = SAMPLING.samples
+    parts: tuple[str, ...] = ()
+    left: tuple[str, ...] = ()
 
     @property
     def manifest(self) -> Mapping[str, Any]:
@@ -108,6 +114,16 @@ def sampling_of(folder: Path, name: str) -> Sampling:
     return sampled_at(*said) if len(said) == 1 and min(said) in SAMPLES else SAMPLING
 
 
+def parts_of(folder: Path, name: str) -> tuple[str, ...]:
+    """Return what the JSON of a scene says that was asked for beside the usual files."""
+    try:
+        text = (folder / name / f"{name}.json").read_text(encoding="utf-8")
+        said = shlex.split(json.loads(text)["command"])
+    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+        return ()
+    return tuple(part for part in (CASADI, OVER_MEMBERS) if f"--{part}" in said)
+
+
 def files(library: Library, folder: Path, sampling: Sampling) -> Files:
     """Return a scene's files, made in memory: what lies below ``folder`` is compared, never run.
 
@@ -115,16 +131,18 @@ def files(library: Library, folder: Path, sampling: Sampling) -> Files:
     """
     name = library.scene.name
     measured = figures_of(library, Measuring(sampling, folder))
-    lies = (folder / name / f"{name}_external.c").is_file()
-    of = derivatives_of_step(library) if lies else None
+    parts = parts_of(folder, name)
+    of = derivatives_of_step(library) if CASADI in parts else None
     beside = lying_beside(library, folder)
-    made = scene_files(library, measured.each, measured.digest, beside, of)
+    made = scene_files(library, measured.each, measured.digest, beside, of, parts)
     texts = {path.partition("/")[2]: text for path, text in made.items()}
     own = {file: text for file, text in texts.items() if not file.endswith(".html")}
     if not (folder / name).is_dir():
         return Files(own, "made in memory", (), sampling.samples)
-    found = tuple(difference.name for difference in differences(folder, made))
-    return Files(own, f"{folder / name}", found, sampling.samples)
+    every = [*differences(folder, made)]
+    found = tuple(d.name for d in every if not d.left_over)
+    left = tuple(str(folder / d.name) for d in every if d.left_over)
+    return Files(own, f"{folder / name}", found, sampling.samples, parts, left)
 
 
 def loaded(library: Library, found: Files, workshop: Path, with_: Compiler) -> Iterator[Emitted]:

@@ -26,6 +26,9 @@ from derive.scene.escape import brief
 NEARBY = 1e-6
 """Change of what is set, relative to it, that nobody means: values are given to a few digits."""
 
+WHOLE = 10**20
+"""Times this, logarithms are rounded to whole numbers, which have one sum everywhere."""
+
 
 @dataclass(frozen=True)
 class Small:
@@ -50,7 +53,8 @@ class Linearised:
 def linearised(machine: Scene, balances: Balances) -> Linearised:
     """Return the three matrices of the free coordinates and speeds in order.
 
-    Each row is the one in which its own coordinate has the most mass, counted positive.
+    Rows are in the order in which the masses on the diagonal have the largest product, each counted
+    positive: so are those of any symmetric positive definite matrix, however rows are scaled.
     """
     free = [m for m in (*machine.coordinates, *machine.speeds) if m.free]
     sheet = balances.frames.sheet
@@ -166,15 +170,13 @@ def _own_rows(mass: Matrix, balances: Balances) -> list[tuple[int, int]]:
     """Return for each free coordinate the row that is its own, and the sign of its mass there."""
     probe = random_probe(balances.frames.words, 0)
     size = mass.shape[0]
-    values = [[float(probe.value(mass[i, k])) for k in range(size)] for i in range(size)]
+    values = [[probe.value(mass[i, k]) for k in range(size)] for i in range(size)]
     graph = nx.Graph()
-    for i, row in enumerate(values):
-        largest = max(map(abs, row))
+    with mp.workdps(DIGITS):
         graph.add_edges_from(
-            (("row", i), ("column", k), {"weight": abs(x) / largest})
-            for k, x in enumerate(row)
-            if x
-        )
+            (("row", i), ("column", k), {"weight": int(mp.log(abs(x)) * WHOLE)})
+            for i, row in enumerate(values) for k, x in enumerate(row) if x
+        )  # fmt: skip
     mates = {}
     for pair in nx.max_weight_matching(graph, maxcardinality=True):
         column, row = sorted(pair)

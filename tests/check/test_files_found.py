@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+import derive
 from derive.check import as_made
 from derive.check.emitted import Files, files, sampling_of
 from derive.emit.files import scene_files, write
@@ -50,6 +51,22 @@ def test_what_lies_there_is_compared_and_never_run(folder: Path, found: Files, e
 def test_a_missing_file_is_named(folder: Path) -> None:
     (folder / NAME / f"{NAME}_f32.h").unlink()
     assert f"{NAME}/{NAME}_f32.h" in files(library_of(NAME), folder, FEW).differ
+
+
+def test_what_was_asked_for_beside_is_made_again_and_what_is_no_longer_is_left_over(
+    tmp_path: Path,
+) -> None:
+    scene = derive.load(NAME)
+    scene.generate(tmp_path, samples=64, parts="batch")
+    lying = files(scene.library, tmp_path, sampling_of(tmp_path, NAME))
+    says = as_made(scene.library, lying, NAME).says
+    assert says.endswith(f"{NAME}: as made by --samples 64 --batch")
+    scene.generate(tmp_path, samples=64)
+    lying = files(scene.library, tmp_path, sampling_of(tmp_path, NAME))
+    verdict = as_made(scene.library, lying, NAME)
+    left = [str(tmp_path / NAME / f"{NAME}_batch_{end}") for end in ("f32.c", "f32.h", "f64.c")]
+    assert (verdict.outcome, lying.differ) == ("FAILS", ())
+    assert f"run `rm {' '.join(left)}" in verdict.says
 
 
 def test_a_scene_of_which_nothing_lies_there_is_skipped(found: Files) -> None:

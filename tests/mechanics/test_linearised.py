@@ -42,6 +42,70 @@ def test_the_masses_of_small_motion_are_positive_and_on_the_diagonal(name: str) 
     assert np.all(np.diag(mass) >= 0.999 * np.abs(mass).max(axis=1))
 
 
+CART = """
+wanted = ["linearised"]
+[parameters]
+M = { unit = "kg", range = [1, 2] }
+m = { unit = "kg", range = [0.1, 0.5] }
+l = { unit = "m", range = [0.2, 0.5] }
+[coordinates]
+x = { unit = "m", range = [-1, 1] }
+a = { unit = "rad", range = [-3, 3] }
+b = { unit = "rad", range = [-3, 3] }
+[frames.cart]
+origin = ["x", "0", "0"]
+[frames.one]
+parent = "cart"
+turned = ["y a"]
+[frames.two]
+parent = "one"
+origin = ["0", "0", "-l"]
+turned = ["y b"]
+[bodies.cart]
+frame = "cart"
+shape = "point"
+mass = "M"
+[bodies.one]
+frame = "one"
+shape = "rod"
+axis = "z"
+mass = "m"
+length = "l"
+centre = ["0", "0", "-l/2"]
+[bodies.two]
+frame = "two"
+shape = "rod"
+axis = "z"
+mass = "m"
+length = "l"
+centre = ["0", "0", "-l/2"]
+[loads.weight]
+gravity = ["0", "0", "-9.81"]
+[loads.rail]
+on = "cart"
+force = ["0", "?rail_y", "?rail_z"]
+[loads.h1]
+on = "one"
+against = "cart"
+force = "?N"
+couple = ["?c1", "0", "?c3"]
+[loads.h2]
+on = "two"
+against = "one"
+force = "?P"
+couple = ["?d1", "0", "?d3"]
+"""
+
+
+def test_rows_of_coupled_coordinates_are_in_the_order_of_the_coordinates(tmp_path: Path) -> None:
+    """Masses and stiffnesses of a machine that keeps its energy are symmetric."""
+    (tmp_path / "cart.toml").write_text(CART, encoding="utf-8")
+    for name in ("mass_matrix", "stiffness_matrix"):
+        found = matrix(str(tmp_path / "cart.toml"), name)
+        assert np.allclose(found, found.T, atol=1e-12)
+    assert np.all(np.linalg.eigvalsh(matrix(str(tmp_path / "cart.toml"), "mass_matrix")) > 0)
+
+
 @pytest.mark.parametrize("name", thinned(["rotor_whirl", "monorail", "gravity_gradient"], 3))
 def test_gyroscopic_terms_of_uncoupled_masses_do_no_work(name: str) -> None:
     """Two coordinates that only gyroscopic terms couple feel them with opposite signs."""
