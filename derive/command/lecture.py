@@ -47,7 +47,8 @@ def _without(reason: str) -> int:
     known = [step.name for step in LECTURE.steps if step.kind == "assume"]
     if reason not in known:
         near = get_close_matches(reason, known, n=1)
-        hint = f"; did you mean '{near[0]}'?" if near else ""
+        hint = "; its page lists them, and `derive lecture` calls each assume"
+        hint = f"; did you mean '{near[0]}'?" if near else hint
         raise SceneError(f"--without needs an assumption of the lecture, not '{reason}'{hint}")
     fall = first_fall(LECTURE, reason)
     if fall is None:

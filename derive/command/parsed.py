@@ -22,7 +22,8 @@ class Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         """Refuse arguments. Raises SceneError with a sentence that begins at the command."""
         if message.startswith(MISSING):
-            message = f"{message.removeprefix(MISSING)} is missing"
+            names = message.removeprefix(MISSING)
+            message = f"{names} {'are' if ', ' in names else 'is'} missing"
         raise SceneError(f"{self.prog.removeprefix('derive').strip()}: {message}".lstrip(": "))
 
 
@@ -32,6 +33,8 @@ def parsed(top: Parser, commands: Iterable[str], arguments: Sequence[str]) -> ar
     if not first.startswith("-") and first not in commands:
         hint = nearest(first, commands)
         raise SceneError(f"{f'there is no command {typed(first)}' if first else COMMAND}{hint}")
+    if first.startswith("-") and (option := first.partition("=")[0]) not in _every_option(top):
+        raise SceneError(f"{typed(option)} is no option{nearest(option, _options(top))}")
     told, more = top.parse_known_args(arguments)
     if more:
         option = more[0].partition("=")[0]
@@ -51,6 +54,10 @@ def _hint(option: str, top: Parser, own: Parser) -> str:
     if having:
         return f" of it (but of {', '.join(having)})"
     return nearest(option, _options(own))
+
+
+def _every_option(of: Parser) -> list[str]:
+    return [*vars(of)["_option_string_actions"]]
 
 
 def _options(of: Parser) -> list[str]:

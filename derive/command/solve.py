@@ -75,7 +75,8 @@ def solve(given: argparse.Namespace) -> int:
     _print(rows if rows or not found.unanswered else None, found.doubts)
     if found.unanswered and not values:
         names = ", ".join(f"'{name}'" for name in found.unanswered)
-        raise derive.DeriveError(f"set values by --set, as the example does: {names} need them")
+        need = "needs them" if len(found.unanswered) == 1 else "need them"
+        raise derive.DeriveError(f"set values by --set, as the example does: {names} {need}")
     if found.unanswered:
         each = [f"'{name}' needs {', '.join(own)}" for name, own in found.unanswered.items()]
         raise derive.DeriveError(f"set values by --set: {'; '.join(each)}")

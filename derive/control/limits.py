@@ -135,7 +135,8 @@ def _ends(label: str, value: float | str, unit: str) -> tuple[float, float]:
         high = one_number(label, "the limit", own)
         low = -high
     if not low < high:
-        raise SceneError(f"{label}: a limit must be above 0, or LOW..HIGH, not {value}")
+        rule = "LOW..HIGH must ascend" if dots else "a limit must be above 0, or LOW..HIGH"
+        raise SceneError(f"{label}: {rule}, not {value}")
     return low, high
 
 

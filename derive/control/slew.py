@@ -36,7 +36,7 @@ def axis_of(label: str, text: str) -> NDFloat:
     length = np.linalg.norm(found)
     if len(found) != 3 or not any(found):
         raise SceneError(
-            f"{label}: an axis is x, y, z or three numbers as 1,2,2, not {shown(text)}"
+            f"{label}: an axis is x, y, z or three numbers as 1,2,2, not all 0, not {shown(text)}"
         )
     axis: NDFloat = np.array(found) / length
     return axis

@@ -130,7 +130,8 @@ def _states(frames: Frames, brings: Onto, box: Box) -> list[np.ndarray]:
         _require_slopes(brings, np.all(flat, axis=0), np.array(found))
         return found
     names = ", ".join(f"'{c.name}'" for c in frames.machine.constraints)
-    rule = f"no state of the declared ranges was found that fulfils constraint {names}"
+    kind = "constraint" if len(frames.machine.constraints) == 1 else "constraints"
+    rule = f"no state of the declared ranges was found that fulfils {kind} {names}"
     more = f"; the nearest has {best}" if best else ", nor any near them: do they contradict"
     raise SceneError(f"{rule}{more}{'' if best else ' each other?'}")
 

@@ -104,7 +104,8 @@ def document_text(document: Mapping[str, object], name: str) -> str:
 def _contents(path: Path) -> str:
     start = f"scene {_quoted(path.stem)}: {visible(str(path))}"
     if not os.path.isfile(path):
-        state = "is not a file" if os.path.exists(path) else "does not exist"
+        state = "is a link that leads nowhere" if os.path.islink(path) else "does not exist"
+        state = "is not a file" if os.path.exists(path) else state
         raise SceneError(f"{start} {state}")
     try:
         with path.open("rb") as file:

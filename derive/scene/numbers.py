@@ -58,7 +58,7 @@ def value(formula: Formula, values: Valuation, label: str) -> float:
     found = float(exact)
     if not math.isfinite(found):
         large = f"is {nstr(exact, 3)}, beyond what a double holds,"
-        rule = "has no value" if math.isnan(found) else large
+        rule = "has no value that a double holds" if math.isnan(found) else large
         raise SceneError(f"{label} = '{brief(formula)}' {rule}{where(values, (formula,))}")
     return found
 

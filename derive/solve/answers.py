@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import isfinite
 
-from derive.scene import Input, SceneError
+from derive.scene import DeriveError, Input, SceneError
 from derive.scene.machine import LEFT_OVER, Steady
 from derive.scene.unit import behind
 from derive.scene.wanted import moves
@@ -25,6 +25,14 @@ class AnswerRow:
     unit: str
 
 
+class AnswerError(DeriveError, KeyError):
+    """An answer that there is not, or of which there are several."""
+
+    def __str__(self) -> str:
+        """Return the sentence, which a KeyError would put in quotation marks."""
+        return str(self.args[0])
+
+
 @dataclass(frozen=True, repr=False)
 class Answered:
     """What a scene answers at given values, and what it cannot answer without further ones.
@@ -38,12 +46,12 @@ class Answered:
     doubts: tuple[str, ...]
 
     def __getitem__(self, name: str) -> float:
-        """Return the value of an answer. Raises KeyError if there is none, or more than one."""
-        (value,) = self.all(name) if len(self.all(name)) == 1 else (None,)
-        if value is None:
-            found = f"{len(self.all(name))} values; see rows" if self.all(name) else "no answer"
-            raise KeyError(f"'{name}' has {found}")
-        return value
+        """Return the value of an answer. Raises AnswerError if there is none, or several differ."""
+        values = [*dict.fromkeys(self.all(name))]
+        if len(values) == 1:
+            return values[0]
+        found = f"{len(values)} values; see rows" if values else "no answer"
+        raise AnswerError(f"'{name}' has {found}")
 
     def all(self, name: str) -> tuple[float, ...]:
         """Return every value of an answer, of several steady motions one each."""

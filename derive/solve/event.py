@@ -52,13 +52,14 @@ def event(found: Instrument, given: Mapping[str, float], text: object) -> Event:
     if one is not None and other is not None and one != other and not alone:
         says = f"'{brief(left)}' is in {spelled(one)}, but '{brief(right)}' in {spelled(other)}"
         raise SceneError(f"{label}: {says}")
-    states = {c for q in found.library.vocabulary.states for c in q.components}
+    states = [c for q in found.library.vocabulary.states for c in q.components]
     used = symbols(left - right)
     if unset := [n for n in used if n not in {*states, *given, *functions, "pi"}]:
         raise SceneError(f"{label} uses '{unset[0]}', which is not set")
-    if states.isdisjoint(used) and not {*used} & functions.keys():
+    sought = Event(text.strip(), left - right, functions)
+    if not casadi.depends_on(*_residual(found, given, states, sought)):
         raise SceneError(f"{label} '{brief(text)}' holds nothing that changes on the way")
-    return Event(text.strip(), left - right, functions)
+    return sought
 
 
 def answers_along(found: Instrument, given: Mapping[str, float]) -> dict[str, str]:
@@ -86,12 +87,20 @@ def _dimensions(found: Instrument, functions: Mapping[str, str]) -> dict[str, Di
 
 def residual(found: Instrument, given: Mapping[str, float], names: Sequence[str], of: Event) -> Any:
     """Return what is zero when an event happens, as a CasADi function of the state."""
+    left, x = _residual(found, given, names, of)
+    return casadi.Function("event", [x], [left])
+
+
+def _residual(
+    found: Instrument, given: Mapping[str, float], names: Sequence[str], of: Event
+) -> tuple[casadi.SX, casadi.SX]:
+    """Return what is zero when an event happens, and the state that it is made of."""
     x = casadi.SX.sym("x", len(names))
     values: dict[str, Any] = dict(given) | {n: x[k] for k, n in enumerate(names)}
     known = dict(values)
     for name in dict.fromkeys(of.functions[n] for n in symbols(of.left) if n in of.functions):
         known |= found.answer(name, values)
-    return casadi.Function("event", [x], [evaluate(of.left, known | values, CASADI)])
+    return casadi.SX(evaluate(of.left, known | values, CASADI)), x
 
 
 @dataclass

@@ -11,7 +11,7 @@ from derive.emit.c.comment import of_what
 from derive.emit.c.members_file import OVER_MEMBERS as OVER_MEMBERS
 from derive.emit.files import scene_files, unfinished, write
 from derive.emit.gallery.card import Card, card, gallery
-from derive.emit.page.lecture import lecture_page
+from derive.emit.page.lecture import GALLERY, lecture_page
 from derive.emit.page.scene import scene_page
 from derive.emit.reported import NOTHING_BESIDE, lying_beside, reports_in
 from derive.library.external import CASADI as CASADI
@@ -46,7 +46,6 @@ EXTENTS: Mapping[str, tuple[str, ...]] = {
     "usual": (), CASADI: (CASADI,), OVER_MEMBERS: (OVER_MEMBERS,), "all": (CASADI, OVER_MEMBERS),
 }  # fmt: skip
 LECTURE_PAGE = "lecture.html"
-GALLERY_PAGE = "index.html"
 
 
 @dataclass(frozen=True)
@@ -131,7 +130,7 @@ def stored(folder: Path, made: Sequence[Made], more: Mapping[str, str]) -> Gener
     """
     texts = {name: text for one in made for name, text in one.texts.items()} | dict(more)
     if LECTURE_PAGE not in texts and not (folder / LECTURE_PAGE).is_file():
-        texts |= lecture_made(folder).texts
+        texts |= lecture_made(folder, [GALLERY] if (folder / GALLERY).is_file() else []).texts
     stopped = unfinished(folder)
     write(folder, texts)
     return Generation(folder, tuple(texts), tuple(made), stopped, unfinished(folder))
@@ -221,15 +220,18 @@ def few_digits(measured: Sequence[Measurement]) -> Iterator[str]:
         )
 
 
-def lecture_made(folder: Path) -> Made:
-    """Return the lecture's page, which leads to what lies in the folder that it is written to."""
-    return Made({LECTURE_PAGE: lecture_page(reports_in(folder))}, (), ())
+def lecture_made(folder: Path, galleries: Sequence[str] = (GALLERY,)) -> Made:
+    """Return the lecture's page, which leads to what lies in the folder that it is written to.
+
+    galleries : the page of all scenes, if it is there or is made with it
+    """
+    return Made({LECTURE_PAGE: lecture_page(reports_in(folder), galleries)}, (), ())
 
 
 def gallery_of(results: Sequence[Made], folder: Path) -> dict[str, str]:
     """Return the gallery of all scenes that were made, for the folder it is written to."""
     cards = [r.card for r in results if r.card is not None]
-    return {GALLERY_PAGE: gallery(cards, reports_in(folder))}
+    return {GALLERY: gallery(cards, reports_in(folder))}
 
 
 def cost_rows(programs: Library, measured: Sequence[Measurement]) -> tuple[CostRow, ...]:

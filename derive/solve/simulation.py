@@ -34,7 +34,7 @@ SHOWN = 600  # points of a line, at most
 class Simulation:
     """Times and, for each component of the state, its values.
 
-    doubts : warnings about what lies outside of its declared range, given or on the way
+    doubts : warnings about what lies outside of its range, given or on the way
     left   : the largest value of every constraint on the way, and of its rate, which are to be 0
     """
 
@@ -116,7 +116,7 @@ def _outside(
             if len(wrong):
                 when = f" after {times[wrong[0]]:.4g} s" if name in motion and wrong[0] else ""
                 value = f"{name} is {values[wrong[0]]:.6g}{behind(q.unit)}{when}"
-                yield f"{value}, outside of its declared range, {low:g} to {high:g}"
+                yield f"{value}, outside of its range, {low:g} to {high:g}"
 
 
 def _count(until: float, step: float) -> int:

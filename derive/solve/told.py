@@ -57,10 +57,12 @@ def path(what: str, value: object) -> Path:
 
 
 def require_another_file(file: Path, scene: str) -> None:
-    """Refuse to write over the scene itself, of which this is the text."""
+    """Refuse to write a plot over what is none, as the scene itself, of which this is the text."""
     there = file.read_bytes() if os.path.isfile(file) else b""
-    if of_the_scene(there.decode("utf-8-sig", "replace")) == scene:
-        raise SceneError(f"plot {file}: the scene itself lies there; name another file")
+    if there.strip() and not there.lstrip().startswith(b"<svg"):
+        own = of_the_scene(there.decode("utf-8-sig", "replace")) == scene
+        lies = "the scene itself lies there" if own else "what lies there is no plot"
+        raise SceneError(f"plot {file}: {lies}; name another file")
 
 
 def count(what: str, value: Any, known: range) -> int:

@@ -14,7 +14,7 @@ COST = {"energy": 1}
 REFUSED = [
     ({}, "nothing is to be reached"),
     ({"turn": "z"}, 'a turn is an axis and an angle, as "z 180deg"'),
-    ({"turn": "q 1"}, "an axis is x, y, z or three numbers as 1,2,2, not 'q'"),
+    ({"turn": "q 1"}, "an axis is x, y, z or three numbers as 1,2,2, not all 0, not 'q'"),
     ({"turn": "0,0,0 1"}, "an axis is x, y, z or three numbers"),
     ({"turn": "z 200deg"}, "by more than 0 and at most 180deg, not 200deg"),
     ({"turn": "z x"}, "a value is a finite number"),
@@ -25,7 +25,7 @@ REFUSED = [
     ({"turn": "z 1", "until": 0}, "until must be a number of seconds above 0, not 0"),
     ({"turn": "z 1", "limits": {"momnt": 1}}, "not of 'momnt' (did you mean 'moment_"),
     ({"turn": "z 1", "limits": {"moment": 0}}, "a limit must be above 0, or LOW..HIGH, not 0"),
-    ({"turn": "z 1", "limits": {"moment": "2..1"}}, "or LOW..HIGH, not 2..1"),
+    ({"turn": "z 1", "limits": {"moment": "2..1"}}, "LOW..HIGH must ascend, not 2..1"),
     ({"turn": "z 1", "avoid": ["x 1"]}, "to avoid is an axis of a body, a direction"),
     ({"end": {"attitude_w": 2}}, "an attitude at the end must have length 1, not 2"),
     ({"end": {"moment_x": 2}}, "has no 'moment_x' to set"),

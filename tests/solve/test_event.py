@@ -67,6 +67,7 @@ def test_a_pole_is_no_event_and_neither_is_the_start() -> None:
         ("q = m", "stop: 'q' is in 1, but 'm' in kg"),
         ("q = x", "stop uses 'x', which the scene does not declare"),
         ("m = 1.2", "stop 'm = 1.2' holds nothing that changes on the way"),
+        ("q = q", "stop 'q = q' holds nothing that changes on the way"),
         ("q = __import__('os')", "is no part of a formula"),
     ],
 )

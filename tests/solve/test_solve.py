@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+import derive
 from derive import Handle, load
 from derive.cli import main
 from derive.scene import CATALOGUE, SceneError, catalogue
@@ -144,17 +145,20 @@ def test_a_value_that_is_set_twice_is_refused(capsys: pytest.CaptureFixture[str]
 def test_a_plot_replaces_no_scene_and_nothing_but_a_regular_file(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    scene, pipe, linked = (tmp_path / name for name in ("own.toml", "pipe", "linked.svg"))
+    names = ("own.toml", "pipe", "linked.svg", "other.toml")
+    scene, pipe, linked, other = (tmp_path / name for name in names)
+    other.write_text('wanted = ["acceleration"]\n')
     scene.write_text((CATALOGUE / "sleeping_top.toml").read_text(encoding="utf-8"))
     os.mkfifo(pipe)
     linked.symlink_to(scene)
     before = scene.read_bytes()
     data = [f"{name}={value}" for name, value in (TOP | START).items()]
-    for file in (scene, linked, pipe, tmp_path, tmp_path / ("x" * 300)):
+    for file in (scene, linked, pipe, other, tmp_path, tmp_path / ("x" * 300)):
         command = ["solve", str(scene), "--set", *data, "--until=0.1", f"--plot={file}"]
         assert main(command) == 2
         assert "derive: " in capsys.readouterr().err
     assert scene.read_bytes() == before
+    assert other.read_text() == 'wanted = ["acceleration"]\n'
     assert pipe.is_fifo()
     assert linked.is_symlink()
 
@@ -171,12 +175,12 @@ def test_a_motion_outside_of_the_declared_ranges_is_doubted(
 ) -> None:
     assert top().simulate(TOP | START, 0.01).doubts == ()
     far = top().simulate(TOP | START | {"m": 50, "alpha_dot": 300.0}, 0.01).doubts
-    assert "m is 50 kg, outside of its declared range, 0.4 to 0.6" in far
+    assert "m is 50 kg, outside of its range, 0.4 to 0.6" in far
     assert any(says.startswith("alpha_dot is 300 rad/s, outside") for says in far)
     assert any(says.startswith("alpha is ") and " after 0." in says for says in far)
     data = [f"{name}={value}" for name, value in (TOP | START | {"m": 50}).items()]
     assert main(["solve", "sleeping_top", "--set", *data, "--until", "0.01"]) == 0
-    assert "warning: m is 50 kg, outside of its declared range" in capsys.readouterr().err
+    assert "warning: m is 50 kg, outside of its range" in capsys.readouterr().err
 
 
 def followed(name: str, function: str) -> tuple[str, str]:
@@ -226,3 +230,16 @@ def test_no_answer_is_a_zero_with_a_sign(capsys: pytest.CaptureFixture[str]) -> 
     for more in (["--limit=b"], ["--until=0.01"]):
         assert main(["solve", "cart_pendulum", "--set", *data, *more]) == 0
         assert " -0 " not in capsys.readouterr().out
+
+
+def test_an_answer_of_two_functions_has_its_value_and_none_a_sentence() -> None:
+    wanted = {"wanted": ["acceleration", "acceleration_jacobian"]}
+    body = {"kind": "principal", "moments": ["A", "B", "C"]}
+    each = {n: {"unit": "kg m^2", "range": [1, 2]} for n in "ABC"}
+    scene = derive.load(wanted | {"parameters": each, "body": body}, name="both")
+    given = {"A": 1, "B": 1.5, "C": 2, "omega_x": 1, "omega_y": 2, "omega_z": 3}
+    moments = {f"moment_{c}": 0 for c in "xyz"}
+    found = scene.solve(given | moments)
+    assert found["omega_dot_x"] == (1.5 - 2) * 2 * 3 / 1
+    with pytest.raises(derive.DeriveError, match=r"^'nosuch' has no answer$"):
+        found["nosuch"]

@@ -46,6 +46,7 @@ _CARRIED = {
     "s_dot": ("wheel_accelerations[k]", ""),
     "u": ("wheel_torques[k]", ""),
 }
+GALLERY = "index.html"
 _MARKS = {"assume": "assumed", "define": "defined", "deduce": "checked"}
 _BUILT = {
     ("symbol", ()): 'scalar("{}")',
@@ -55,15 +56,16 @@ _BUILT = {
 }
 
 
-def lecture_page(reports: Sequence[str] = ()) -> str:
+def lecture_page(reports: Sequence[str] = (), galleries: Sequence[str] = (GALLERY,)) -> str:
     """Return the text of ``lecture.html``, complete in one file and without scripts.
 
-    reports : the page of many cases, if it is there
+    reports, galleries : the page of many cases and that of all scenes, if they are there
     """
+    pages = dict.fromkeys(galleries, "Scenes") | dict.fromkeys(reports, "Speed against error")
     return TEMPLATES.get_template("lecture.html.jinja").render(
         title=LECTURE.title,
         version=__version__,
-        reports=reports,
+        pages=pages,
         chapters=CHAPTERS,
         marks=_MARKS,
         kinds={kind: sum(s.kind == kind for s in LECTURE.steps) for kind in _MARKS},

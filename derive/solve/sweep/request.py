@@ -132,7 +132,7 @@ def outside_at_start(
             if least < low or most > high:
                 is_at = f"{least:.6g}" if least == most else f"{least:.6g} to {most:.6g}"
                 says = f"{c} is {is_at}{behind(q.unit)}"
-                yield f"{says}, outside of its declared range, {low:g} to {high:g}"
+                yield f"{says}, outside of its range, {low:g} to {high:g}"
 
 
 def scheduler_of(value: object) -> str | None:

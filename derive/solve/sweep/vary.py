@@ -164,7 +164,7 @@ def _spread(label: str, name: str, text: str, unit: str) -> Spread:
         low, high = (number(label, end.strip(), unit) for end in grid.groups()[:2])
         count = int(grid[3]) if WHOLE.fullmatch(grid[3].strip()) else 0
         if not 0 < count <= MOST_OF_GRID:
-            rule = f"a grid has a whole number of values, up to {MOST_OF_GRID}"
+            rule = f"a grid has a whole number of values, 1 to {MOST_OF_GRID}"
             raise SceneError(f"{label}: {rule}, not {shown(grid[3])}")
         _require_apart(label, low, high)
         return Spread(name, "grid", (low, high), count)
