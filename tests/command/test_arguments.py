@@ -11,7 +11,7 @@ REFUSED = {
     "solve": "solve: SCENE is missing",
     "--bogus": "'--bogus' is no option (known: --version)",
     "sweep ball.toml": "sweep: --until, --out are missing",
-    "lecture --without nosuch": "--without needs an assumption of the lecture, not 'nosuch'; its page",
+    "lecture --without nosuch": "--without needs an assumption of the lecture, not 'nosuch'; its",
     "solve ball.toml --set m": "--set takes NAME=VALUE, as m=1200, not 'm'",
     "solve ball.toml --set =2": "--set takes NAME=VALUE, as m=1200, not '=2'",
     "solve ball.toml --set omega_x=20cm": "omega_x=20cm: a value is a finite number in SI units"
