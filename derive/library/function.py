@@ -118,7 +118,8 @@ def arranged(terms: Graphed, base: str) -> Arranged:
     implied: dict[str, Arrangement] = {}
     for n in order:
         each.setdefault(ways[n].by, costs[n][0])
-        if ways[n].implied:
+        told = ways[n].implied
+        if told is not None and (told.plain or n == order[0]):  # where values divide by it anyway
             implied.setdefault(ways[n].by, ways[n])
     return replace(found[order[0]], ways=each, implied=tuple(implied.values()))
 
@@ -179,7 +180,8 @@ def _differentiated(
     every = (jacobian_by_factors(terms.graph, way, terms.by_symbol(), leaves)
              for way in wanted.implied)  # fmt: skip
     found = [one for one in every if one is not None]
-    if not found or len(wanted.problem.unknowns) < MANY_UNKNOWNS:
+    many = len(wanted.problem.unknowns) >= MANY_UNKNOWNS
+    if not (found and many and all(w.implied and w.implied.plain for w in wanted.implied)):
         ways = dict.fromkeys((_one_by_one(wanted), _together(terms.graph, wanted)))
         found += [_in_groups(terms.graph, wanted, groups, inputs) for groups in ways]
     return min(found, key=lambda one: cost(terms.graph, [*one[0], *(e for r in one[1] for e in r)]))

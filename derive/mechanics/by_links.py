@@ -5,6 +5,7 @@ way that yields other answers than the balances at trial points is none.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 
 from sympy import Expr, Integer, Symbol
 
@@ -33,8 +34,7 @@ def by_links(
 ) -> Iterator[tuple[str, OnTheWay, Implied | None]]:  # fmt: skip
     """Yield ways to the unknowns of a function: how, values in order, what they stand on before.
 
-    Beside these stands what slopes of the unknowns follow from, where a mass matrix of links that
-    turn freely was solved: of others it may divide by nothing where a body is a rod.
+    Beside these stands what slopes of the unknowns follow from, where a mass matrix was solved.
     """
     found, sheet = mechanism.lean(base), mechanism.answers.frames.sheet
     problem = found.problem
@@ -44,7 +44,11 @@ def by_links(
     ways: Iterator[tuple[str, OnTheWay, Implied | None]]
     long = False
     if mechanism.scene.constraints:
-        ways = ((how, own, None) for how, own in held_together(mechanism, sought))
+        names = " ".join(sorted(map(str, sought)))
+        every = mechanism.told_once(
+            "held together", names, lambda: tuple(held_together(mechanism, sought))
+        )
+        ways = ((how, own, None) for how, own in every)
     else:
         moved = free if sought and not free.isdisjoint(problem.unknowns) else sought
         machine = links(mechanism.answers.frames, moved)
@@ -82,11 +86,12 @@ def _solved(
     for order in _orders(machine, unknowns):
         if absolute is not None:
             own, found = absolute.system.solved(order)
-            told = absolute.told(by_rows(absolute.system, own, found)) if machine.plain else None
+            rows = by_rows(absolute.system, own, found)
+            told = absolute.told(rows) if machine.plain else replace(rows, plain=False)
             yield "absolute angles", {**own.definitions, **relative(machine, found)}, told
         own, found = system.solved(order)
-        told = by_passes(machine, own, found) if machine.plain else None
-        yield "recursion", {**own.definitions, **found}, told
+        passes = by_passes(machine, own, found)
+        yield "recursion", {**own.definitions, **found}, replace(passes, plain=machine.plain)
 
 
 def _pairs(machine: Links) -> int:

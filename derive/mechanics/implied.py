@@ -35,6 +35,7 @@ class Implied:
     solved : each unknown of the system, as it was found
     left   : b - A x by unknown, made of ``definitions`` and of what is on the way to ``solved``
     angles : of links, parents first, and their rates
+    plain  : whether no body makes its factors divide by nothing, whatever way is taken for values
     """
 
     solved: Mapping[Symbol, Expr]
@@ -43,6 +44,7 @@ class Implied:
     definitions: Mapping[Symbol, Expr]
     angles: tuple[Turned, ...] = ()
     rates: tuple[Turned, ...] = ()
+    plain: bool = True
 
     def expressions(self) -> tuple[Expr, ...]:
         """Return all that is not on the way to what is solved."""
@@ -55,12 +57,13 @@ class Implied:
         def put(values: Mapping[Symbol, Expr]) -> dict[Symbol, Expr]:
             return {s: e.xreplace(known) for s, e in values.items()}
 
-        kinds = (tuple(replace(t, value=t.value.xreplace(known)) for t in kind)
-                 for kind in (self.angles, self.rates))  # fmt: skip
+        angles, rates = (tuple(replace(t, value=t.value.xreplace(known)) for t in kind)
+                         for kind in (self.angles, self.rates))  # fmt: skip
         of = self.factors
         below = {pair: e.xreplace(known) for pair, e in of.below.items()}
         factors = Factors(of.order, below, put(of.inverses))
-        return Implied(put(self.solved), put(self.left), factors, put(self.definitions), *kinds)
+        return Implied(put(self.solved), put(self.left), factors, put(self.definitions),
+                       angles, rates, self.plain)  # fmt: skip
 
 
 def by_passes(machine: Links, own: MassMatrix, found: Mapping[Symbol, Expr]) -> Implied:

@@ -38,7 +38,7 @@ class Mechanism:
     """A machine with its words and balances; problems are posed once and kept.
 
     inverse : the machine with its motion given, and what moves it sought
-    told    : what its readers are told of a function, by what it is and of which
+    told    : what is found once of a function or of some unknowns, by what it is and of which
     """
 
     scene: Scene
@@ -50,7 +50,7 @@ class Mechanism:
     told: dict[tuple[str, str], Any] = field(default_factory=dict)
 
     def told_once(self, what: str, base: str, make: Callable[[], T]) -> T:
-        """Return what readers are told of a function, made when it is asked for first."""
+        """Return what is told of a function or of unknowns, made when it is asked for first."""
         place = what, base
         if place not in self.told:
             self.told[place] = make()

@@ -1,7 +1,7 @@
 """Balances that determine what is asked wherever the machine itself does."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property, partial
 
 from sympy import Expr, Integer, Symbol
@@ -25,6 +25,8 @@ from derive.mechanics.sweep import (
 )
 from derive.scene import SceneError
 
+Determining = tuple[tuple[ValuedBalance, ...], tuple[Symbol, ...]]
+"""Balances, and the unknowns that they determine."""
 TRIES = 6  # places at which balances must be independent, found one after another
 
 
@@ -34,15 +36,22 @@ class Regular:
 
     frames: Frames
     balances: Balances
+    found: dict[frozenset[Symbol], Determining] = field(default_factory=dict, compare=False)
+    """What was determined already: a rate of the state is asked for beside accelerations."""
 
     @cached_property
     def _contradiction(self) -> str:
         return contradiction(self.balances)
 
-    def determining(
-        self, wanted: set[Symbol]
-    ) -> tuple[tuple[ValuedBalance, ...], tuple[Symbol, ...]]:
-        """Return balances that determine the unknowns wherever the machine itself does.
+    def determining(self, wanted: set[Symbol]) -> Determining:
+        """Return balances that determine the unknowns wherever the machine itself does."""
+        key = frozenset(wanted)
+        if key not in self.found:
+            self.found[key] = self._determining(wanted)
+        return self.found[key]
+
+    def _determining(self, wanted: set[Symbol]) -> Determining:
+        """Return such balances, sought anew.
 
         Where those chosen are found to depend on each other, others are, for that place too.
         """
@@ -92,9 +101,7 @@ class Regular:
         place = probe_at(self.frames.words, worst.place, self.frames.sheet.definitions)
         return clearly_told(self.balances, frozenset(map(every.index, unknowns)), place)
 
-    def _chosen(
-        self, wanted: set[Symbol], hard: Sequence[Probe]
-    ) -> tuple[tuple[ValuedBalance, ...], tuple[Symbol, ...]]:
+    def _chosen(self, wanted: set[Symbol], hard: Sequence[Probe]) -> Determining:
         every = self.balances.unknowns
         require_told(self.balances, wanted)
         require_held(self.balances, wanted)

@@ -1,6 +1,8 @@
 """Jacobians of accelerations come by the factors that solved these, and no solution is derived."""
 
 from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -9,6 +11,7 @@ from derive.library.library import library
 from derive.lower import implied as by_factors
 from derive.lower.arrange.arrangement import Arrangement
 from derive.lower.graph import Graph
+from derive.mechanics import by_links as by_links_
 from derive.mechanics.by_links import by_links
 from derive.mechanics.implied import Implied, Turned
 from derive.mechanics.mechanism import mechanism
@@ -46,6 +49,38 @@ def test_links_that_branch_slide_and_are_pushed_are_linearised(text: str) -> Non
     made = library(parse_scene(with_jacobian(text), "chain"))
     prove(made)
     assert made["accelerations_jacobian"].sparsity
+
+
+MACHINES = Path(__file__).parents[2] / "bench" / "machines"
+FREE = {"satellite_with_arm": 682, "satellite_with_two_links": 2099}
+"""Operations of the accelerations of links that hang on a free body, with their Jacobian."""
+
+
+@pytest.mark.parametrize(
+    "name", ["satellite_with_arm", pytest.param("satellite_with_two_links", marks=pytest.mark.long)]
+)
+def test_links_on_a_free_body_are_linearised_by_the_factors_of_the_way_that_is_taken(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    text = (MACHINES / f"{name}.toml").read_text(encoding="utf-8")
+    first, _, rest = text.partition("wanted")
+    asked = f'{first}wanted = ["accelerations_jacobian"]\n{rest.partition(chr(10))[2]}'
+    made = library(parse_scene(asked, "free"))
+    assert made["accelerations_jacobian"].flops() <= FREE[name]
+    if name == "satellite_with_arm":
+        prove(made)
+        monkeypatch.setattr(by_links_, "by_passes", _held_too_long)
+        with pytest.raises(ProofError):
+            prove(library(parse_scene(asked, "free")))
+
+
+def _held_too_long(*given: Any) -> Implied:
+    own = BY_PASSES(*given)
+    first, *others = own.left
+    return replace(own, left={first: own.left[first] / 2} | {u: own.left[u] for u in others})
+
+
+BY_PASSES = by_links_.by_passes
 
 
 def mutants(own: Implied) -> dict[str, Implied]:
