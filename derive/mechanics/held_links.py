@@ -20,7 +20,7 @@ CLEAR = 0.02
 NOISE = 1e-12  # what an elimination leaves of a slope that it takes out
 MOST_AT_ONCE = 4096  # pivots that are valued together
 ONE = Symbol("one")
-Places = tuple[int, ...]
+Picked = tuple[int, ...]
 LinearSum = dict[Symbol, Expr]
 """A sum of accelerations times factors; what holds none stands with the symbol of one."""
 
@@ -37,7 +37,7 @@ class HeldCondition:
 class Elimination:
     """Conditions, by their places, that are solved together for as many accelerations."""
 
-    rows: Places
+    rows: Picked
     unknowns: tuple[Symbol, ...]
 
 
@@ -188,11 +188,11 @@ def pivots_of(
 
 def _clearest(
     left: Doubles, rows: Sequence[int], columns: Sequence[int], size: int
-) -> tuple[float, tuple[Places, Places]]:
+) -> tuple[float, tuple[Picked, Picked]]:
     """Return the pivot that is largest where it is smallest, and its conditions and unknowns."""
     used = np.any(np.abs(left) > NOISE, axis=0)
     each = [(r, c) for r in combinations(rows, size) for c in _held_by(used, r, columns)]
-    best: tuple[float, tuple[Places, Places]] = (0.0, ((), ()))
+    best: tuple[float, tuple[Picked, Picked]] = (0.0, ((), ()))
     for n in range(0, len(each), MOST_AT_ONCE):
         some = each[n : n + MOST_AT_ONCE]
         sizes = _sized(left, [r for r, _ in some], [c for _, c in some])
@@ -203,7 +203,7 @@ def _clearest(
     return best
 
 
-def _held_by(used: Doubles, rows: Places, columns: Sequence[int]) -> Iterable[Places]:
+def _held_by(used: Doubles, rows: Picked, columns: Sequence[int]) -> Iterable[Picked]:
     """Return as many unknowns as there are conditions, each held by a condition of its own."""
     own = ([k for k in columns if used[r, k]] for r in rows)
     return sorted({tuple(sorted(c)) for c in product(*own) if len({*c}) == len(rows)})
@@ -234,7 +234,7 @@ def _eliminated(
     return found
 
 
-def _sized(left: Doubles, rows: Sequence[Places], columns: Sequence[Places]) -> Doubles:
+def _sized(left: Doubles, rows: Sequence[Picked], columns: Sequence[Picked]) -> Doubles:
     """Return pivots (points, pivots), beside the largest slopes of their conditions."""
     r, c = np.array(rows, int), np.array(columns, int)
     size = np.prod(np.max(np.abs(left), axis=2)[:, r], axis=2)
