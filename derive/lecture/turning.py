@@ -1,7 +1,10 @@
 """Single turns about axes: their matrices, and sines and cosines brought to one form."""
 
+from math import inf
+
 from sympy import Expr, Integer, Matrix, Pow, cos, eye, sin, zeros
 
+from derive.lecture.polynomial import Multiplied, NotAPolynomialError
 from derive.lecture.stated import by_law
 
 ADDED = "angular_velocities_add"
@@ -32,14 +35,22 @@ def turn_matrix(axis: str, angle: Expr) -> Matrix:
     return R
 
 
-def reduced(expression: Expr) -> Expr:
+def reduced(expression: Expr, most: float = inf) -> Expr:
     """Return ``expression`` multiplied out, with sin^2 = 1 - cos^2.
+
+    A polynomial stays as it is if that makes more than so many terms of it.
 
     >>> from sympy import Symbol
     >>> a = Symbol("a")
     >>> reduced(sin(a) ** 3 + sin(a) * cos(a) ** 2)
     sin(a)
     """
+    by = Multiplied()
+    try:
+        terms = by.without_squared_sines(by.of(expression))
+        return by.written(terms) if len(terms) <= most else expression
+    except NotAPolynomialError:
+        pass
     lowered = expression.expand().replace(
         lambda e: isinstance(e, Pow) and isinstance(e.base, sin) and e.exp.is_Integer and e.exp > 1,
         lambda e: (1 - cos(e.base.args[0]) ** 2) ** (e.exp // 2) * e.base ** (e.exp % 2),

@@ -108,7 +108,7 @@ def _plainer(value: Expr) -> Expr:
     """Return a value as it is, or multiplied out with sin^2 = 1 - cos^2 if that is shorter."""
     if not value.has(sin, cos) or _is_flat(value) or value.count_ops() > 4 * LONGEST:
         return value
-    return min(value, reduced(value), key=lambda e: e.count_ops())
+    return min(value, reduced(value, value.count_ops()), key=lambda e: e.count_ops())
 
 
 def _is_flat(value: Expr) -> bool:

@@ -9,9 +9,10 @@ from collections.abc import Iterator
 from functools import lru_cache
 from itertools import combinations
 
-from sympy import Add, Expr, Mul, Pow, cos, default_sort_key, expand, factor_terms, sin
+from sympy import Add, Expr, Mul, Pow, cos, default_sort_key, factor_terms, sin
 from sympy.simplify.fu import TR6, TR10i
 
+from derive.lecture.polynomial import without_brackets
 from derive.lecture.turning import reduced
 
 BaseAndPower = tuple[Expr, Expr]  # a factor's base, and its exponent
@@ -53,7 +54,7 @@ def _forms(value: Expr) -> Iterator[Expr]:
     yield outside
     if _length(value)[0] > LONGEST or not value.has(Add):
         return
-    whole = expand(value)
+    whole = without_brackets(value)
     every = [value, whole]
     if any(map(_adds_angles, whole.atoms(Add))):
         every.append(TR10i(whole))
@@ -61,7 +62,7 @@ def _forms(value: Expr) -> Iterator[Expr]:
     if sin in squared:
         every.append(reduced(whole))
     if cos in squared:
-        every.append(expand(TR6(whole)))
+        every.append(without_brackets(TR6(whole)))
     for one in dict.fromkeys(every):
         yield from (one, _gathered(one))
 
