@@ -32,9 +32,9 @@ METHOD = (
 PROVING = (
     *("program/arithmetic", "program/own_sine", "program/pair_sine", "program/pairs"),
     *("verify/columns", "verify/draw", "verify/scale"),
-    *(f"verify/proved/{name}" for name in ("bounds", "cut", "enclosed", "forms", "lengths")),
-    *(f"verify/proved/{name}" for name in ("meant", "multiples", "ranges", "seen", "slopes")),
-    *(f"verify/proved/{name}" for name in ("sphere", "traits", "unfolded", "waist")),
+    *(f"verify/proved/{name}" for name in ("bounds", "cells", "cut", "enclosed", "forms")),
+    *(f"verify/proved/{name}" for name in ("lengths", "meant", "multiples", "ranges", "seen")),
+    *(f"verify/proved/{name}" for name in ("slopes", "sphere", "traits", "unfolded", "waist")),
 )
 """The modules that bounds are proved by, and seen beside."""
 

@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from derive.program.precision import F32
+from derive.verify.proved import cut
 from derive.verify.proved.bounds import WORK, Proof, bounds_of, cutting
-from derive.verify.proved.cut import Cells, Cutting
+from derive.verify.proved.cells import Cells
+from derive.verify.proved.cut import Cutting
 from derive.verify.proved.seen import Search
 from derive.verify.proved.sphere import UNIT, of_about_unit_length
 from derive.verify.scale import measured_outputs
@@ -82,3 +84,13 @@ def test_twice_a_number_is_exact() -> None:
     assert all(exact[n] for n in twice)
     sums = [n for n, s in enumerate(steps) if s.operator == "add" and n not in twice]
     assert not any(exact[n] for n in sums)
+
+
+def test_what_most_of_a_box_has_no_bound_of_is_not_cut_to_the_end(monkeypatch: Any) -> None:
+    """The mass matrix of two links is never singular, but ranges do not tell that."""
+    at = cut_of("acrobot", "state_rate", "q_1_dot_rate")
+    assert not np.isfinite(at.run().shifts.max())
+    monkeypatch.setattr(cut, "HOPE", 1.0)
+    whole = cut_of("acrobot", "state_rate", "q_1_dot_rate")
+    whole.run()
+    assert 3 * at.spent < whole.spent

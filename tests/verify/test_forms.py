@@ -1,6 +1,7 @@
 """Linear forms hold what is in boxes, and know that values hang together."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -67,7 +68,7 @@ def test_a_form_holds_what_is_in_its_boxes_and_with_half_its_rest_does_not(
 
     def halved(*given: Any) -> Affine:
         form = made(*given)
-        return Affine(form.middle, form.parts, form.rest * (0.0 if name in ROUNDED else 0.5))
+        return replace(form, rest=form.rest * (0.0 if name in ROUNDED else 0.5))
 
     monkeypatch.setitem(MADE, name, (halved, exactly))
     assert escapes(name) > 0

@@ -17,7 +17,8 @@ from derive.program.program import Bound, Program, Quantity
 from derive.verify.columns import planned
 from derive.verify.draw import Dice, Sampled
 from derive.verify.measure import upwards
-from derive.verify.proved.cut import Cells, Cutting, Region
+from derive.verify.proved.cells import Cells
+from derive.verify.proved.cut import Cutting, Region
 from derive.verify.proved.enclosed import BROAD
 from derive.verify.proved.seen import SEARCH, Search, seen
 from derive.verify.proved.sphere import UNIT

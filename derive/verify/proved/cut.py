@@ -3,7 +3,7 @@
 Nothing is left out when it ends early: a bound of all is the largest of its parts, cut or not.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -11,6 +11,7 @@ import numpy as np
 
 from derive.verify.draw import Dice
 from derive.verify.operators import Column
+from derive.verify.proved.cells import Cells, bound_of_each, cut_along, every_cell, in_two
 from derive.verify.proved.enclosed import Enclosed, enclosed
 from derive.verify.proved.ranges import Interval
 from derive.verify.proved.slopes import shifts
@@ -27,11 +28,17 @@ ENDS = 0.5
 """Of all moves go to an end of a range: bounds are largest there."""
 START = 0.1
 """Of the work may be spent on cutting quaternions evenly, before the worst parts are cut."""
+HOPE = 1 / 8
+"""Of the work is spent until half of a box must have a bound, or no more is cut."""
+SPECK = 2.0**-60
+"""Of a box is a part that is not cut any more for having no bound."""
 PIECES = 8
 """Into so many a side is cut to see what cutting it takes from a bound."""
 MOST = 32768
 """Cells that a box is cut into at most."""
 BATCH = 256
+AT_ONCE = 3
+"""Times that parts are halved before they are valued, if they are few: that takes hardly longer."""
 FULL = 1 << 15
 """Numbers that a table of slopes, results by boxes, has at most."""
 
@@ -56,26 +63,6 @@ class Peaks:
 
 
 @dataclass
-class Cells:
-    """Cells of a box, a column each, and how far rounding moves each result in each."""
-
-    lows: Column
-    highs: Column
-    shifts: Column
-    blamed: Column
-
-    def of(self, which: Column) -> "Cells":
-        """Return some of the parts."""
-        return Cells(*(x[..., which] for x in (self.lows, self.highs, self.shifts, self.blamed)))
-
-
-def joined(each: Sequence[Cells]) -> Cells:
-    """Return all parts together."""
-    several = ([getattr(p, n) for p in each] for n in ("lows", "highs", "shifts", "blamed"))
-    return Cells(*(np.concatenate(x, axis=-1) for x in several))
-
-
-@dataclass
 class Cutting:
     """The bound of an output in the making: the largest of its components', over all parts.
 
@@ -94,7 +81,15 @@ class Cutting:
         rows = len(self.traits.trace.results)
         each = [self._valued(*ends) for ends in self.batches(lows, highs)]
         none = Cells(lows[:, :0], highs[:, :0], np.zeros((rows, 0)), np.zeros(0, int))
-        return joined([none, *each])
+        return every_cell([none, *each])
+
+    def again(self, parts: Cells) -> Cells:
+        """Return parts of another precision with their bounds, or those alone that have none."""
+        lacking = parts.of(np.isinf(bound_of_each(parts)))
+        found = self.valued(lacking.lows, lacking.highs)
+        if np.isinf(bound_of_each(found)).any():
+            return found
+        return self.valued(parts.lows, parts.highs)
 
     def batches(self, lows: Column, highs: Column) -> Iterator[tuple[Column, Column]]:
         """Yield parts, as many at once as a table of slopes holds."""
@@ -115,14 +110,20 @@ class Cutting:
         return every.of(~found.void) if found.void.any() else every
 
     def scores(self, parts: Cells) -> Column:
-        """Return how much the bound of each part is above what is certain at points."""
-        over = parts.shifts.max(axis=0, initial=0.0) / max(self.peaks.most, 1e-280)
-        return np.asarray(np.where(np.isnan(over), np.inf, over))
+        """Return how much the bound of each part is above what is certain at points.
+
+        As long as there are many without a bound, nothing is held against points.
+        """
+        over = bound_of_each(parts)
+        many = np.count_nonzero(np.isinf(over)) >= BATCH
+        return over if many else over / max(self.peaks.most, 1e-280)
 
     def run(self) -> Cells:
         """Return parts that make up the box, cut while that makes the bound smaller."""
         parts = self.valued(*self._started())
         while self.spent < self.work and 0 < parts.shifts.shape[1] < MOST:
+            if self._is_in_vain(parts):
+                break
             scores = self.scores(parts)
             if scores.max() <= TIGHT:
                 break
@@ -131,8 +132,17 @@ class Cutting:
             first = first[scores[first] > TIGHT]
             rest = parts.of(order[len(first) :])
             halves = self._halved(parts.of(first))
-            parts = joined([rest, halves])
+            parts = every_cell([rest, halves])
         return parts
+
+    def _is_in_vain(self, parts: Cells) -> bool:
+        """Tell whether after some work most of a box, or what is next to a point, has no bound."""
+        if self.spent <= HOPE * self.work:
+            return False
+        sides, lacking = parts.highs - parts.lows, np.isinf(bound_of_each(parts))
+        sizes = np.prod(np.where(sides > 0, sides, 1.0), axis=0)
+        without, whole = sizes[lacking], sizes.sum()
+        return bool(without.sum() > whole / 2 or without.min(initial=whole) < whole * SPECK)
 
     @cached_property
     def peaks(self) -> Peaks:
@@ -184,34 +194,28 @@ class Cutting:
         """Return parts to begin with: by choices, then quaternions, of the sphere alone."""
         ends = self.box.lows[:, None], self.box.highs[:, None]
         for k in np.flatnonzero(self._free).tolist():
-            decided = self.valued(*_in_two(ends, k))
+            decided = self.valued(*in_two(ends, k))
             ends = decided.lows, decided.highs
         for _ in range(FINEST if self.box.quaternions else 0):
             finer = ends
             for k in (k for places in self.box.quaternions for k in places):
-                finer = near_the_sphere(self.box.quaternions, *_in_two(finer, k), self.traits.shell)
+                finer = near_the_sphere(self.box.quaternions, *in_two(finer, k), self.traits.shell)
             if finer[0].shape[1] > min(MOST / 4, START * self.work / self.price):
                 break
             ends = finer
         return ends
 
     def _halved(self, parts: Cells) -> Cells:
-        """Return parts cut in two, each where that serves the first of them best."""
-        along = self._best(parts)
-        middle = (parts.lows + parts.highs) / 2
-        at = (along, np.arange(len(along)))
-        highs, lows = parts.highs.copy(), parts.lows.copy()
-        highs[at] = middle[at]
-        lows[at] = middle[at]
-        return self.valued(
-            np.concatenate([parts.lows, lows], axis=1), np.concatenate([highs, parts.highs], axis=1)
-        )
-
-    def _best(self, parts: Cells) -> Column:
-        """Return along which of its sides each part is to be cut, as the first one tells."""
-        width = (parts.highs - parts.lows) / (self.box.highs - self.box.lows)[:, None]
-        first = np.maximum(width[:, :1], 1e-12)
-        return np.asarray(np.argmax(self._gains(parts)[:, None] * width / first, axis=0))
+        """Return parts cut in two, each where that serves the first of them best; few, again."""
+        low, high, gains = parts.lows, parts.highs, self._gains(parts)
+        whole = (self.box.highs - self.box.lows)[:, None]
+        first = np.maximum(((high - low) / whole)[:, :1], 1e-12)
+        for _ in range(AT_ONCE):
+            along = np.argmax(gains[:, None] * ((high - low) / whole) / first, axis=0)
+            low, high = cut_along(low, high, along)
+            if 4 * low.shape[1] > BATCH:
+                break
+        return self.valued(low, high)
 
     def _gains(self, parts: Cells) -> Column:
         """Return what cutting each side takes from the bound, or from what keeps it from being."""
@@ -224,7 +228,7 @@ class Cutting:
         self._count(low.shape[1])
         with np.errstate(all="ignore"):
             found = enclosed(self.traits, self.ranges(low, high), low.shape[1])
-            over = self.scores(Cells(low, high, shifts(found, self.rows), found.blamed))
+            over = bound_of_each(Cells(low, high, shifts(found, self.rows), found.blamed))
         if not np.isfinite(over[0]):
             over = _width(found)
         width = (parts.highs[:, 0] - parts.lows[:, 0]) / (self.box.highs - self.box.lows)
@@ -257,15 +261,6 @@ def _first(points: Column, most: Column) -> tuple[Column, Column]:
     """Return the points with the largest bounds."""
     first = np.argsort(-most, kind="stable")[:KEPT]
     return points[:, first], most[first]
-
-
-def _in_two(ends: tuple[Column, Column], k: int) -> tuple[Column, Column]:
-    """Return boxes cut in two along a side."""
-    middle = (ends[0][k] + ends[1][k]) / 2
-    low, high = (np.concatenate([x, x], axis=1) for x in ends)
-    low[k, len(middle) :] = middle
-    high[k, : len(middle)] = middle
-    return low, high
 
 
 def _width(found: Enclosed) -> Column:

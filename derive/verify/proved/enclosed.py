@@ -48,7 +48,7 @@ SIZEABLE = {24: 2.0**-100, 53: 2.0**-960}
 class Enclosed:
     """The values of all places over columns of boxes.
 
-    ranges : of each place, and its form      errors : of set-up's values
+    ranges : of each place, and its form while it is needed      errors : of set-up's values
     own    : how far a place's own rounding moves it
     blamed : the first place that has no bound in a box, -1 for none
     void   : the boxes that hold nothing
@@ -56,7 +56,7 @@ class Enclosed:
 
     traits: Traits
     ranges: list[Interval]
-    forms: list[Affine]
+    forms: dict[int, Affine]
     errors: list[Column]
     own: list[Column | None]
     blamed: Column
@@ -65,7 +65,7 @@ class Enclosed:
 
 def enclosed(of: Traits, boxes: Mapping[str, Interval], count: int) -> Enclosed:
     """Return the values of all places over boxes, the ranges of what is given by name."""
-    found = Enclosed(of, [], [], [], [], np.full(count, -1), np.zeros(count, bool))
+    found = Enclosed(of, [], {}, [], [], np.full(count, -1), np.zeros(count, bool))
     own_boxes = {s.name: boxes[s.name] for s in of.trace.steps if s.name}
     known = forms_of_sides(own_boxes, of.quaternions, of.shell)
     symbols = next((len(form.parts) for form in known.values()), 0)
@@ -78,10 +78,12 @@ def enclosed(of: Traits, boxes: Mapping[str, Interval], count: int) -> Enclosed:
         if choice_name(index) in boxes:
             value = _decided(found, value, boxes[choice_name(index)])
         found.ranges.append(value)
-        found.forms.append(form)
+        found.forms[index] = form
         found.errors.append(error)
         found.own.append(own)
         _blame(found, index, step)
+        for place in of.spent[index]:
+            del found.forms[place]
     return found
 
 

@@ -20,16 +20,17 @@ LEAST = 1e-290
 
 @dataclass(frozen=True)
 class Affine:
-    """Values, a column a box; ``parts`` by symbol."""
+    """Values, a column a box; ``parts`` by symbol, and how far all of these move it together."""
 
     middle: Column
     parts: Column
+    swing: Column
     rest: Column
 
     @property
     def spread(self) -> Column:
         """Return how far the symbols and the rest move it at most."""
-        return np.asarray(np.abs(self.parts).sum(axis=0) + self.rest)
+        return self.swing + self.rest
 
     @property
     def ends(self) -> Interval:
@@ -43,15 +44,25 @@ class Affine:
         return np.asarray(np.abs(self.middle) + self.spread)
 
 
+def _formed(middle: Column, parts: Column, rest: Column) -> Affine:
+    return Affine(middle, parts, np.add.reduce(np.abs(parts), axis=0), rest)
+
+
 def plain_form(a: Interval, symbols: int) -> Affine:
     """Return a range, of which nothing is known but its ends."""
-    parts = np.broadcast_to(0.0, (symbols, *a[0].shape))
+    parts, nothing = np.zeros((symbols, *a[0].shape)), np.zeros_like(a[0])
     if a[0] is a[1]:
-        return Affine(a[0], parts, np.zeros_like(a[0]))
+        return Affine(a[0], parts, nothing, nothing)
+    middle, rest = _around(a)
+    return Affine(middle, parts, nothing, rest)
+
+
+def _around(a: Interval) -> tuple[Column, Column]:
+    """Return the middle of a range and how far its ends are from there."""
     middle = (a[0] + a[1]) / 2
     rest = np.maximum(a[1] - middle, middle - a[0])
     rest = rest + (np.abs(a[0]) + np.abs(a[1])) * LOST
-    return Affine(middle, parts, np.where(a[0] == a[1], 0.0, rest))
+    return middle, np.where(a[0] == a[1], 0.0, rest)
 
 
 def side_form(a: Interval, symbol: int, symbols: int) -> Affine:
@@ -59,18 +70,18 @@ def side_form(a: Interval, symbol: int, symbols: int) -> Affine:
     made = plain_form(a, symbols)
     parts = made.parts.copy()
     parts[symbol] = made.rest
-    return Affine(made.middle, parts, np.zeros_like(made.rest))
+    return Affine(made.middle, parts, made.rest, made.swing)
 
 
 def sum_of_forms(a: Affine, b: Affine) -> Affine:
     """Return a + b."""
-    made = Affine(a.middle + b.middle, a.parts + b.parts, a.rest + b.rest)
+    made = _formed(a.middle + b.middle, a.parts + b.parts, a.rest + b.rest)
     return widened_form(made, LOST * made.size)
 
 
 def opposite(a: Affine) -> Affine:
     """Return -a."""
-    return Affine(-a.middle, -a.parts, a.rest)
+    return Affine(-a.middle, -a.parts, a.swing, a.rest)
 
 
 def difference_of_forms(a: Affine, b: Affine) -> Affine:
@@ -81,11 +92,12 @@ def difference_of_forms(a: Affine, b: Affine) -> Affine:
 def product(a: Affine, b: Affine) -> Affine:
     """Return a b."""
     over = a.spread, b.spread
-    sizes = np.abs(a.middle) + over[0], np.abs(b.middle) + over[1]
-    rest = np.abs(a.middle) * b.rest + np.abs(b.middle) * a.rest + over[0] * over[1]
+    far = np.abs(a.middle), np.abs(b.middle)
+    sizes = far[0] + over[0], far[1] + over[1]
+    rest = far[0] * b.rest + far[1] * a.rest + over[0] * over[1]
     parts = a.middle * b.parts + b.middle * a.parts
     lost = LOST * sizes[0] * sizes[1] + LEAST * ((sizes[0] > 0) & (sizes[1] > 0))
-    return Affine(a.middle * b.middle, parts, rest + lost)
+    return _formed(a.middle * b.middle, parts, rest + lost)
 
 
 def square_form(a: Affine) -> Affine:
@@ -93,13 +105,13 @@ def square_form(a: Affine) -> Affine:
     over = a.spread
     half = over * over / 2
     rest = 2 * np.abs(a.middle) * a.rest + half + LOST * (np.abs(a.middle) + over) ** 2 + LEAST
-    return Affine(a.middle * a.middle + half, 2 * a.middle * a.parts, rest)
+    return _formed(a.middle * a.middle + half, 2 * a.middle * a.parts, rest)
 
 
 def quotient_form(a: Affine, b: Affine, of: Interval) -> Affine:
     """Return a / b, b within a range too: the quotient of middles, and what is left over b."""
     share = np.where(b.middle != 0, a.middle / np.where(b.middle != 0, b.middle, 1.0), 0.0)
-    whole = Affine(share, np.zeros_like(a.parts), np.zeros_like(a.rest))
+    whole = plain_form((share, share), len(a.parts))
     left = difference_of_forms(a, product(whole, b))
     return sum_of_forms(whole, product(left, inverse_form(b, of)))
 
@@ -141,12 +153,12 @@ def _line(a: Affine, slope: Column, first: Column, second: Column, size: Column)
     middle = (first + second) / 2
     rest = np.abs(second - first) / 2 + np.abs(slope) * a.rest
     over = size + np.abs(middle) + np.abs(slope) * a.size
-    return Affine(slope * a.middle + middle, slope * a.parts, rest + LOST * over + LEAST)
+    return _formed(slope * a.middle + middle, slope * a.parts, rest + LOST * over + LEAST)
 
 
 def widened_form(a: Affine, by: Column | None) -> Affine:
     """Return a with so much more on either side."""
-    return a if by is None else Affine(a.middle, a.parts, a.rest + by)
+    return a if by is None else Affine(a.middle, a.parts, a.swing, a.rest + by)
 
 
 def chosen_form(a: Affine, b: Affine, where: Column) -> Affine:
@@ -154,6 +166,7 @@ def chosen_form(a: Affine, b: Affine, where: Column) -> Affine:
     return Affine(
         np.where(where, a.middle, b.middle),
         np.where(where, a.parts, b.parts),
+        np.where(where, a.swing, b.swing),
         np.where(where, a.rest, b.rest),
     )
 
@@ -162,4 +175,8 @@ def fitted_form(a: Affine, of: Interval) -> Affine:
     """Return a, or its range alone where that says more than all that a form leaves open."""
     half = (of[1] - of[0]) / 2
     fits = a.rest <= half
-    return a if fits.all() else chosen_form(a, plain_form(of, len(a.parts)), fits)
+    if fits.all():
+        return a
+    middle, rest = _around(of)
+    parts, swing = np.where(fits, a.parts, 0.0), np.where(fits, a.swing, 0.0)
+    return Affine(np.where(fits, a.middle, middle), parts, swing, np.where(fits, a.rest, rest))

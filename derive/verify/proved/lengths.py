@@ -3,7 +3,7 @@
 Along the way from true to computed values it is off by what rounding has made of it by then.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import reduce
 from operator import add
 
@@ -25,18 +25,18 @@ def squared_length(
     of: Traits,
     index: int,
     ranges: Sequence[Interval],
-    forms: Sequence[Affine],
+    forms: Mapping[int, Affine],
     own: Sequence[Column | None],
 ) -> tuple[Interval, Affine, Column]:
     """Return the range and form of |q|^2 |p|^2, and how far rounding moves it on its way."""
     names, places = of.multiples[index]
     one = dict(zip(names, UNIT_QUATERNION, strict=True))
-    at = dict[int, tuple[Interval, Affine]]()
+    at, symbols = dict[int, tuple[Interval, Affine]](), len(next(iter(forms.values())).parts)
     for n in places:
         step = of.trace.steps[n]
         if step.operator == "given":
             whole = (np.full_like(ranges[0][0], float(one[step.name])),) * 2
-            at[n] = whole, plain_form(whole, len(forms[0].parts))
+            at[n] = whole, plain_form(whole, symbols)
             continue
         operands = [at.get(o) or (ranges[o], forms[o]) for o in step.operands]
         each, own_forms = [a for a, _ in operands], [f for _, f in operands]

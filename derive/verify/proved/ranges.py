@@ -28,20 +28,23 @@ FARTHEST = float(FITTED[53].largest)
 
 def outward(low: Column, high: Column) -> Interval:
     """Return a range that holds what ends were rounded from, all numbers for ends that are none."""
-    return _numbers(low - _slack(low, LEAST), high + _slack(high, LEAST))
+    under, over = _slack(low, LEAST), _slack(high, LEAST)
+    np.subtract(low, under, out=under)
+    return _numbers(under, np.add(high, over, out=over))
 
 
 def _slack(x: Column, least: float) -> Column:
     """Return what an end is moved by."""
     by = np.abs(x)
     by *= SLACK
-    by += least
+    if least:
+        by += least
     return by
 
 
 def _numbers(low: Column, high: Column) -> Interval:
     """Return a range, all numbers for ends that are none."""
-    return np.fmax(low, -np.inf), np.fmin(high, np.inf)
+    return np.fmax(low, -np.inf, out=low), np.fmin(high, np.inf, out=high)
 
 
 def greatest(a: Interval) -> Column:
@@ -71,8 +74,12 @@ def times(a: Interval, b: Interval) -> Interval:
     low = np.minimum(np.minimum(corners[0], corners[1]), np.minimum(corners[2], corners[3]))
     high = np.maximum(np.maximum(corners[0], corners[1]), np.maximum(corners[2], corners[3]))
     low, high = outward(low, high)
-    nothing = ((a[0] == 0) & (a[1] == 0)) | ((b[0] == 0) & (b[1] == 0))
-    return np.where(nothing, 0.0, low), np.where(nothing, 0.0, high)
+    for x in (a, b):
+        nothing = x[0] == 0
+        if nothing.any():
+            nothing &= x[1] == 0
+            low, high = np.where(nothing, 0.0, low), np.where(nothing, 0.0, high)
+    return low, high
 
 
 def squared(a: Interval) -> Interval:

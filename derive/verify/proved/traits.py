@@ -84,6 +84,19 @@ class Traits:
                 found[n] = names, within
         return found
 
+    @cached_property
+    def spent(self) -> tuple[tuple[int, ...], ...]:
+        """Return of each place those whose forms nothing needs any more after it."""
+        steps, last = self.trace.steps, dict[int, int]()
+        for index, step in enumerate(steps):
+            _, within = self.multiples.get(index, ((), ()))
+            read = (*step.operands, *(o for n in within for o in steps[n].operands))
+            last |= dict.fromkeys((index, *read), index)
+        found: list[list[int]] = [[] for _ in steps]
+        for place, index in last.items():
+            found[index].append(place)
+        return tuple(map(tuple, found))
+
 
 def choice_name(index: int) -> str:
     """Return what a comparison is called among what boxes have ends of: 0 to 1, false to true."""

@@ -10,7 +10,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from derive.verify.proved.cut import Cells, Cutting, Region
+from derive.verify.proved.cells import Cells
+from derive.verify.proved.cut import Cutting, Region
 from derive.verify.proved.enclosed import enclosed
 from derive.verify.proved.lengths import UPWARDS
 from derive.verify.proved.multiples import squares_in
@@ -29,14 +30,14 @@ def bounded(at: Cutting, known: Sequence[Cells] = ()) -> tuple[Cells, ...]:
     """
     place = waist(at.traits)
     if place is None or len(known) == 1:
-        return (at.valued(known[0].lows, known[0].highs) if known else at.run(),)
+        return (at.again(known[0]) if known else at.run(),)
     head = _head(at, place)
-    before = head.valued(known[0].lows, known[0].highs) if known else head.run()
+    before = head.again(known[0]) if known else head.run()
     tail = _tail(at, place, *_carried(head, before))
     if tail is None:
         return (at.run(),)
     tail.work = at.work - head.spent
-    after = tail.valued(known[1].lows, known[1].highs) if known else tail.run()
+    after = tail.again(known[1]) if known else tail.run()
     at.spent += head.spent + tail.spent
     return before, after
 
