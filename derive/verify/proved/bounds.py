@@ -5,7 +5,7 @@ parameters and inputs being floats of their declared ranges: absolute, the large
 components. What cannot be proved says why.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -85,10 +85,10 @@ class Proved:
 
 
 def bounds_of(library: Library, program: Program, by: Proof) -> Iterator[Bound]:
-    """Yield the bounds of a function, output by output: parts cut for float serve double too."""
+    """Yield the bounds of a function, output by output: what is found for float serves double."""
     each: list[Proved] = []
     for precision in PRECISIONS:
-        each = _proved(library, program, precision, by.work, {p.name: p.parts for p in each})
+        each = _proved(library, program, precision, by.work, {p.name: p for p in each})
         peaks = [p.at.peaks for p in each if p.at and not p.why]
         off = [0.0] * len(each)
         if peaks:
@@ -106,7 +106,7 @@ def _proved(
     program: Program,
     precision: Precision,
     work: int,
-    cut: Mapping[str, Sequence[Cells]],
+    known: Mapping[str, Proved],
 ) -> list[Proved]:
     """Return the bound of each output: the short ones first, whose work is left to the others."""
     found, ahead = dict[str, Proved](), dict[str, Cutting]()
@@ -117,7 +117,10 @@ def _proved(
             found[q.name] = Proved(q.name, why=str(why))
     for name, at in sorted(ahead.items(), key=lambda item: item[1].price):
         at.work = work // (len(measured_outputs(program)) - len(found))
-        parts = bounded(at, cut.get(name, ()))
+        before = known.get(name)
+        if before and before.at and not before.why:
+            at.highest = before.at.peaks.points
+        parts = bounded(at, before.parts if before else ())
         found[name] = Proved(name, *_largest(at, parts[-1]), at, parts)
         work -= at.spent
     return [found[q.name] for q, _ in measured_outputs(program)]

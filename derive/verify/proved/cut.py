@@ -28,7 +28,7 @@ ENDS = 0.5
 """Of all moves go to an end of a range: bounds are largest there."""
 START = 0.1
 """Of the work may be spent on cutting quaternions evenly, before the worst parts are cut."""
-HOPE = 1 / 8
+HOPE = 1 / 16
 """Of the work is spent until half of a box must have a bound, or no more is cut."""
 SPECK = 2.0**-60
 """Of a box is a part that is not cut any more for having no bound."""
@@ -66,7 +66,8 @@ class Peaks:
 class Cutting:
     """The bound of an output in the making: the largest of its components', over all parts.
 
-    Work is counted in operations over one box, for one result.
+    work    : counted in operations over one box, for one result
+    highest : points at which the bound in another precision is largest, and so is this one
     """
 
     traits: Traits
@@ -74,6 +75,7 @@ class Cutting:
     work: int
     dice: Dice
     spent: int = 0
+    highest: Column | None = None
 
     def valued(self, lows: Column, highs: Column) -> Cells:
         """Return parts with their bounds, those that hold nothing left out."""
@@ -112,11 +114,13 @@ class Cutting:
     def scores(self, parts: Cells) -> Column:
         """Return how much the bound of each part is above what is certain at points.
 
-        As long as there are many without a bound, nothing is held against points.
+        As long as some are without a bound, these alone count.
         """
         over = bound_of_each(parts)
-        many = np.count_nonzero(np.isinf(over)) >= BATCH
-        return over if many else over / max(self.peaks.most, 1e-280)
+        lacking = np.isinf(over)
+        if lacking.any():
+            return np.where(lacking, np.inf, 0.0)
+        return over / max(self.peaks.most, 1e-280)
 
     def run(self) -> Cells:
         """Return parts that make up the box, cut while that makes the bound smaller."""
@@ -147,6 +151,9 @@ class Cutting:
     @cached_property
     def peaks(self) -> Peaks:
         """Return points with the largest bounds that a climb finds: none of all can be below."""
+        if self.highest is not None:
+            most = self._certain(self.highest)
+            return Peaks(self.box.names, self.highest, float(most.max(initial=0.0)))
         count = max(16, min(TRIED_AT, self.work // (CLIMBS * 4 * self.price)))
         points = np.repeat(self.box.lows[:, None], count, axis=1)
         points = self._moved(points, np.ones_like(points))
