@@ -7,7 +7,6 @@ elsewhere stand for their bodies, and these are tried alone, with what they are 
 
 import re
 from collections.abc import Iterable, Sequence
-from itertools import pairwise
 
 import numpy as np
 
@@ -39,9 +38,13 @@ VALUES = {
 """What operations on pairs return, but for a few units in the last place of a float."""
 CALLED = {"sub": ("add",), "sin": ("sine", "0"), "cos": ("sine", "1")}
 """What does an operation whose own name calls nothing but it, and with what besides."""
+RETURNED = "Frama_C_show_each_returned"
+"""What Eva tells of where it gets to: nothing is shown of what it never does."""
 WAVES = ("sin", "cos")
 POLYNOMIAL = ((-64.0, 64.0),) * 2
 """Far more than operands in the polynomial of a sine of pairs are."""
+POWERS = [(2.0**n, 2.0 ** (n + 1) * (1 - NEAR)) for n in range(-64, 64)]
+"""Powers of two, and up to where a number surely has none above."""
 AROUND = 16
 """In u: more than low parts of operands and the rounding of what is above move a high part."""
 
@@ -68,21 +71,24 @@ def _bounded_sine(of: re.Match[str]) -> str:
 
 
 def _wave(name: str, angle: str, which: int, precision: Precision) -> list[str]:
-    """Return C that puts any float within two units in the last place of sines into a name."""
-    edges, off = np.arange(-SIXTEENTHS, SIXTEENTHS + 1) / 16, 4 * precision.unit_roundoff
-    low, high = wave((edges[:-1], edges[1:]), which)
-    ends = zip(low - off, high + off, strict=True)
-    pieces = [(*at, between(*e, precision)) for at, e in zip(pairwise(edges), ends, strict=True)]
-    return _by_pieces(name, angle, pieces, between(-1 - off, 1 + off, precision))
+    """Return C that puts any float within two units in the last place of sines into a name.
 
-
-def _by_pieces(
-    name: str, of: str, pieces: Iterable[tuple[float, float, str]], elsewhere: str
-) -> list[str]:
-    """Return C that puts into a name what is stated where another value is on a piece."""
-    chain = [f"if ({of} >= {low} && {of} <= {high}) {{ {name} = {value}; }}"
-             for low, high, value in pieces]  # fmt: skip
-    return [f"    {way} else" for way in chain] + [f"    {{ {name} = {elsewhere}; }}"]
+    Bounds of pieces are tables: choices within choices, as many, take Eva seconds to read.
+    Rounding may take an angle at an edge for one of the piece beside, so pieces overlap.
+    """
+    kind, u = precision.scalar, precision.unit_roundoff
+    edges = np.arange(-SIXTEENTHS, SIXTEENTHS + 2) / 16
+    low, high = wave((edges[:-1] - 16 * u, edges[1:] + 16 * u), which)
+    ends = [ends_in_c(*each, precision) for each in zip(low - 4 * u, high + 4 * u, strict=True)]
+    tables = zip(("least", "most"), zip(*ends, strict=True), strict=True)
+    return [
+        f"    {name} = {between(-1 - 4 * u, 1 + 4 * u, precision)};",
+        f"    if ({angle} >= {edges[0]} && {angle} < {-edges[0]}) {{",
+        *(f"        static const {kind} {n}[] = {{{', '.join(ends)}}};" for n, ends in tables),
+        f"        const int piece = (int)(({angle} + {-edges[0]}) * 16);",
+        f"        /*@ admit least[piece] <= {name} <= most[piece]; */",
+        "    }",
+    ]
 
 
 def _bounded_pair(of: re.Match[str]) -> str:
@@ -108,9 +114,10 @@ def _value(name: str, precision: Precision) -> list[str]:
         each = [_wave("value", "a.high", which, precision) for which in (0, 1)]
         return ["    if (quarters < 0.5) {", *each[0], "    } else {", *each[1], "    }"]
     if name == "power_of_two":
-        powers = np.ldexp(1.0, np.arange(-64, 64))
-        pieces = [(x, 2 * x * (1 - NEAR), f"{x}") for x in powers]
-        return _by_pieces("value", "a.high", pieces, f"a.high * {between(0.49, 1.01, precision)}")
+        return [
+            f"    value = a.high * {between(0.49, 1.01, precision)};",
+            *(f"    if (a.high >= {x} && a.high <= {y}) {{ value = {x}; }}" for x, y in POWERS),
+        ]
     return [f"    value = {VALUES[name].format(**precision.functions)};"]
 
 
@@ -152,7 +159,7 @@ def _pair(ends: tuple[float, float], precision: Precision) -> str:
 
 
 def _trial(text: str, calls: Sequence[str]) -> str:
-    body = "".join(f"    {call};\n" for call in calls)
+    body = "".join(f"    {call};\n" for call in [*calls, f"{RETURNED}(0)"])
     return (
         f'#include "__fc_builtin.h"\n{plain(text)}\nvoid main(void)\n{{\n{body}}}\n'
         if calls
@@ -162,9 +169,14 @@ def _trial(text: str, calls: Sequence[str]) -> str:
 
 def between(low: float, high: float, precision: Precision) -> str:
     """Return the C of any float between two numbers, or next to one that is none."""
+    return f"Frama_C_{precision.scalar}_interval({', '.join(ends_in_c(low, high, precision))})"
+
+
+def ends_in_c(low: float, high: float, precision: Precision) -> tuple[str, str]:
+    """Return the C of the nearest floats that have two numbers between them."""
     kind, ends = precision.dtype, []
     for end, way in ((low, -np.inf), (high, np.inf)):
         held = kind(end)
         inward = float(held) > end if way < 0 else float(held) < end
         ends.append(float(np.nextafter(held, kind(way))) if inward else float(held))
-    return f"Frama_C_{precision.scalar}_interval({ends[0].hex()}, {ends[1].hex()})"
+    return ends[0].hex(), ends[1].hex()
