@@ -40,7 +40,7 @@ from derive.program.precision import F32, PRECISIONS, Precision
 from derive.program.program import Program, Quantity
 from derive.scene.declaration import DeriveError
 from derive.verify.proved.bounds import ends_in_floats
-from derive.verify.proved.divisors import Divisor, divisors
+from derive.verify.proved.divisors import Divisor, divisors, results
 from derive.verify.proved.regular import (
     FloatRanges,
     PairOperation,
@@ -128,6 +128,12 @@ class Analysis:
             return Verdict(*head, "skipped", str(says))
         text = entered(self.library, program, self.precision, parts)
         alone = Verdict(*head, *_judged(self.said(program.name, text), len(parts)))
+        for made, plan in _plans(self.library, program):
+            ends = planned_ranges(self.library, made, self.precision)
+            if says := escaped(self.library, made, ends, self.precision):
+                return Verdict(*head, "FAILS", f"{plan.name}: {says}")
+            says = f"{alone.says}, given what derive proves, not Eva: {plan.name} by {made.name}"
+            alone = Verdict(*head, alone.outcome, says)
         ranges = () if alone.outcome != "skipped" else self.divisors(program)
         return self._told(program, ranges) if ranges else alone
 
@@ -168,11 +174,27 @@ def cut_into_parts(library: Library, program: Program, precision: Precision) -> 
 
 def _given(library: Library, program: Program, precision: Precision) -> FloatRanges | str:
     """Return the ranges of all that a function is given, by component, or what has none."""
-    own = [q for q in program.inputs if q.role != "constants"]
-    if q := next((q for q in own if q.low is None and q.role == "plan"), None):
-        return f"{q.name} has no range"
+    own = [q for q in program.inputs if q.role not in ("constants", "plan")]
     quantities = {c: q for q in (*library.setup.inputs, *own) for c in q.components}
-    return {c: _ends(quantities, c, precision) for c in quantities}
+    every = {c: _ends(quantities, c, precision) for c in quantities}
+    for made, q in _plans(library, program):
+        ends = planned_ranges(library, made, precision)
+        if len(ends) < len(q.components) or not np.isfinite([(d.low, d.high) for d in ends]).all():
+            return f"{q.name} has no range, for all that is seen of {made.name}"
+        every |= {c: (d.low, d.high) for c, d in zip(q.components, ends, strict=True)}
+    return every
+
+
+def _plans(library: Library, program: Program) -> list[tuple[Program, Quantity]]:
+    """Return the functions that make what a function takes as a plan, with these plans."""
+    plans = [q for q in program.inputs if q.role == "plan"]
+    return [(p, q) for q in plans for p in library.printed() if q in p.outputs]
+
+
+def planned_ranges(library: Library, made: Program, precision: Precision) -> tuple[Divisor, ...]:
+    """Return the ranges of all that a plan has, by their names in the function that makes it."""
+    given = _given(library, made, precision)
+    return () if isinstance(given, str) else results(library, made, given, precision)
 
 
 def _ends(of: dict[str, Quantity], name: str, precision: Precision) -> tuple[float, float]:

@@ -58,7 +58,9 @@ def with_ranges(text: str, symbol: str, ranges: Sequence[Divisor]) -> str:
         return text
     told = body[0]
     for divisor in ranges:
-        made = re.compile(rf"^    const \w+ {divisor.name} = .*;$", re.MULTILINE)
+        made = re.compile(rf"^(    const (\w+) {divisor.name} = )[^;]*;$", re.MULTILINE)
+        ends = f"{divisor.low!r}, {divisor.high!r}"
         says = f"    /*@ admit {divisor.low!r} <= {divisor.name} <= {divisor.high!r}; */"
-        told = made.sub(rf"\g<0>\n{says}", told, count=1)
+        new = rf"\g<1>Frama_C_\g<2>_interval({ends});" if divisor.quotient else "\\g<0>"
+        told = made.sub(f"{new}\n{says}", told, count=1)
     return text[: body.start()] + told + text[body.end() :]

@@ -7,6 +7,7 @@ they are made of, so that the same divisor of each stage of a step is as easy as
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
@@ -14,11 +15,10 @@ from derive.library.library import Library
 from derive.program.precision import Precision
 from derive.program.program import Op, Program, component_names
 from derive.program.run import run, run_lines
-from derive.verify.operators import Column
-from derive.verify.proved.enclosed import enclosed
-from derive.verify.proved.ranges import Interval
+from derive.verify.proved.scaled import Scaled, scaling
+from derive.verify.proved.slivers import Slivers, choosing
 from derive.verify.proved.sphere import near_the_sphere
-from derive.verify.proved.traits import Traits, traits
+from derive.verify.proved.traits import choice_name, traits
 from derive.verify.proved.unfolded import Operation, Recorder, Spot, pruned
 
 WAVES = ("sin", "cos")
@@ -29,16 +29,23 @@ LOOKED_AT = 1_500_000_000
 """Operations over a box that are spent on the divisors of a function at most."""
 NEAR = 1 / 8
 """Of the value nearest to zero that is met: parts are cut until none may be nearer than that."""
-AT_ONCE = 1 << 14
+NEVER_LESS = ("sqrt", "abs")
+"""What gives no number below zero."""
+NEXT = 2.0**-16
+"""Far more than rounding adds to products and sines, relative to them."""
 
 
 @dataclass(frozen=True)
 class Divisor:
-    """A value of a function by its name, and between which floats it is wherever it is called."""
+    """A value of a function by its name, and between which floats it is wherever it is called.
+
+    quotient : whether it is one whose divisor, by itself, may be as near to zero as it will
+    """
 
     name: str
     low: float
     high: float
+    quotient: bool = False
 
 
 @dataclass
@@ -59,22 +66,64 @@ def divisors(
     boxes : of parameters and of the function's other inputs, the ends by component
     It ends before the first that is not: what follows rests on it.
     """
-    steps, by_name = _recorded(library, function, precision)
+    return _walked(library, function, boxes, precision)[1]
+
+
+def results(
+    library: Library,
+    function: Program,
+    boxes: Mapping[str, tuple[float, float]],
+    precision: Precision,
+) -> tuple[Divisor, ...]:
+    """Return the ranges of a function's results, its divisors' known; boxes as of ``divisors``."""
+    at, _, by_name = _walked(library, function, boxes, precision)
+    names = [str(o) for o in function.results if o in by_name]
+    return tuple(Divisor(name, *at.enclosed(by_name[name])) for name in names)
+
+
+def _walked(
+    library: Library,
+    function: Program,
+    boxes: Mapping[str, tuple[float, float]],
+    precision: Precision,
+) -> "tuple[Walk, tuple[Divisor, ...], dict[str, int]]":
+    """Return a function with divisors that are done with, these, and where values stand by name."""
+    steps, divided, by_name = _recorded(library, function, precision)
     quaternions = [q.components for q in function.inputs if q.is_quaternion]
     at = Walk(steps, dict(boxes), quaternions, precision, Work())
-    found = list[Divisor]()
-    for name, place in by_name.items():
-        ends = at.proved(place)
-        if ends is None:
+    found, sized = dict[str, Divisor](), list[Scaled]()
+    for op in divided:
+        name = str(op.operands[-1])
+        if name in found or at.is_root_of_none_below(op, by_name[name]):
+            continue
+        sized += [] if sized else scaling(steps, by_name[name], at.boxes, precision)
+        told = _of_any_size(sized, op, by_name) or at.quotient(op, by_name)
+        ends = None if told else at.proved(by_name[name])
+        if not (told or ends):
             break
-        found.append(Divisor(name, *ends))
-    return tuple(found)
+        told = told or Divisor(name, *(ends or ()))
+        at.stands_for(by_name[told.name], (told.low, told.high))
+        found[told.name] = told
+    return at, tuple(found.values()), by_name
+
+
+def _of_any_size(sized: Sequence[Scaled], op: Op, places: Mapping[str, int]) -> Divisor | None:
+    """Return the range of a divisor that is the same for values of any size, or its quotient's."""
+    for each in sized:
+        name = str(op.operands[-1])
+        ends = each.ends(places[name])
+        if ends and not ends[0] <= 0 <= ends[1]:
+            return Divisor(name, *ends)
+        ends = each.ends(places[op.result]) if op.operator == "div" else None
+        if ends:
+            return Divisor(op.result, *ends, quotient=True)
+    return None
 
 
 def _recorded(
     library: Library, function: Program, precision: Precision
-) -> tuple[list[Operation], dict[str, int]]:
-    """Return all that a function does, and where what it divides by stands, by its name in C."""
+) -> tuple[list[Operation], list[Op], dict[str, int]]:
+    """Return all that a function does, what of it divides, and where values stand by name in C."""
     recorder = Recorder(precision.bits, "pairs")
     parameters = [c for q in library.setup.inputs for c in q.components]
     made = run(library.setup, recorder.arithmetic(), list(map(recorder.given, parameters)))
@@ -83,10 +132,11 @@ def _recorded(
     names = [c for q in function.inputs for c in q.components]
     known: dict[str, Spot] = {n: constants.get(n) or recorder.given(n) for n in names}
     lines = [op for op in function.ops if isinstance(op, Op)]
-    straight = len(lines) == len(function.ops) and not function.numbers
-    run_lines(lines if straight else (), recorder.arithmetic(), known)
-    asked = (op.operands[-1] for op in lines if straight and op.operator in DIVIDES)
-    return recorder.steps, {o: known[o].index for o in asked if isinstance(o, str)}
+    if len(lines) < len(function.ops) or function.numbers:
+        return recorder.steps, [], {}
+    run_lines(lines, recorder.arithmetic(), known)
+    asked = [op for op in lines if op.operator in DIVIDES and isinstance(op.operands[-1], str)]
+    return recorder.steps, asked, {name: spot.index for name, spot in known.items()}
 
 
 @dataclass(frozen=True)
@@ -104,16 +154,68 @@ class Walk:
         if self.steps[place].origin == "given":
             return None
         for angle in self._angles(place):
-            ends = self._enclosed(angle)
+            ends = self.enclosed(angle)
             if not np.all(np.isfinite(ends)):
                 return None
-            self._stands_for(angle, ends)
+            self.stands_for(angle, ends)
         found = self._away_from_zero(place)
         if found is not None:
-            self._stands_for(place, found)
+            self.stands_for(place, found)
         return found
 
-    def _stands_for(self, place: int, ends: tuple[float, float]) -> None:
+    def is_root_of_none_below(self, op: Op, place: int) -> bool:
+        """Tell whether a root is of what is never below zero, for any floats."""
+        return op.operator == "sqrt" and self._never_below(place)
+
+    def _never_below(self, place: int) -> bool:
+        step = self.steps[place]
+        if step.operator == "mul" and step.operands[0] == step.operands[1]:
+            return True
+        every = step.operator in ("add", "mul") and all(map(self._never_below, step.operands))
+        return every or step.operator in NEVER_LESS or (step.number or -1) > 0
+
+    def quotient(self, op: Op, places: Mapping[str, int]) -> Divisor | None:
+        """Return the range of a sine by what its angle is a multiple of, None of other quotients.
+
+        The divisor is above zero, or a number stands for it. What underflow takes of the angle is
+        next to nothing beside the least divisor there is.
+        """
+        if op.operator != "div" or not isinstance(op.operands[0], str):
+            return None
+        above, below = (places[str(o)] for o in op.operands)
+        size = self._guarded(below)
+        factors = self._factors(self.steps[above].operands[0]) if self._is_sine(above) else []
+        if size is None or factors.count(size) != 1:
+            return None
+        ends = [self.enclosed(n) for n in factors if n != size]
+        most = float(np.prod([np.max(np.abs(e)) for e in ends]))
+        least = float(np.finfo(self.precision.dtype).smallest_subnormal)
+        smallest = np.sqrt(least) if self.steps[size].operator == "sqrt" else least
+        reach = most * (1 + NEXT) + (len(ends) + 2) * max(1.0, most) * float(least / smallest)
+        return Divisor(op.result, -reach, reach, quotient=True) if np.isfinite(reach) else None
+
+    def _is_sine(self, place: int) -> bool:
+        return self.steps[place].operator == "sin"
+
+    def _guarded(self, place: int) -> int | None:
+        """Return the value that is taken if it is above zero, a number above it if not."""
+        step = self.steps[place]
+        if step.operator != "select":
+            return None
+        asked, _, other = (self.steps[o] for o in step.operands)
+        compared = asked.operator == "less" and asked.operands[1] == step.operands[1]
+        from_zero = compared and self.steps[asked.operands[0]].number == 0
+        never_less = from_zero and self.steps[step.operands[1]].operator in NEVER_LESS
+        return step.operands[1] if never_less and (other.number or 0) > 0 else None
+
+    def _factors(self, place: int) -> list[int]:
+        """Return what a value is the product of."""
+        step = self.steps[place]
+        if step.operator != "mul":
+            return [place]
+        return [n for o in step.operands for n in self._factors(o)]
+
+    def stands_for(self, place: int, ends: tuple[float, float]) -> None:
         name = f"at {place}"
         self.steps[place] = Operation("given", (), "given", name=name)
         self.boxes[name] = ends
@@ -128,26 +230,30 @@ class Walk:
         angles = {o for step in own if step.operator in WAVES for o in step.operands}
         yield from (n for n in sorted(angles) if self.steps[n].operator != "given")
 
-    def _enclosed(self, place: int) -> tuple[float, float]:
+    def enclosed(self, place: int) -> tuple[float, float]:
         """Return the range of a value over the whole box."""
         cells = self._cells(place, 1)
         low, high = cells.ranges(*cells.whole)
         return float(low.min()), float(high.max())
 
-    def _cells(self, place: int, pieces: int) -> "Slivers":
+    def _cells(self, place: int, pieces: int) -> Slivers:
         """Return what looks at parts of the box for one value."""
         of = traits(pruned(self.steps, [place]), self.precision, self.quaternions)
         names = tuple(s.name for s in of.trace.steps if s.name)
+        free = tuple(map(choice_name, choosing(of)))
         waves = [s.operands[0] for s in of.trace.steps if s.operator in WAVES]
         angles = {of.trace.steps[n].name for n in waves} & {*names}
-        low, high = (np.array([[self.boxes[n][k]] for n in names]).reshape(-1, 1) for k in (0, 1))
+        outcomes = np.array([*product((0.0, 1.0), repeat=len(free))]).T
+        ends = np.array([self.boxes[n] for n in names]).reshape(-1, 2, 1)
+        each = (np.repeat(ends[:, k], outcomes.shape[1], axis=1) for k in (0, 1))
+        low, high = (np.concatenate([end, outcomes]) for end in each)
         for n in sorted(angles):
             edges = np.linspace(*self.boxes[n], 1 + max(1, int(pieces ** (1 / len(angles)))))
             count, k = low.shape[1], names.index(n)
             low, high = (np.repeat(x, len(edges) - 1, axis=1) for x in (low, high))
             low[k], high[k] = np.tile(edges[:-1], count), np.tile(edges[1:], count)
         whole = tuple(tuple(map(names.index, each)) for each in of.quaternions)
-        return Slivers(of, names, (low, high), whole)
+        return Slivers(of, (*names, *free), (low, high), whole)
 
     def _away_from_zero(self, place: int) -> tuple[float, float] | None:
         """Return the range of a value that is found to keep one sign, None if it is not."""
@@ -166,58 +272,3 @@ class Walk:
                 return None
             low, high = cells.halved(low[:, ~sure], high[:, ~sure], NEAR * nearest)
         return ends if ends[0] <= ends[1] else None
-
-
-@dataclass(frozen=True)
-class Slivers:
-    """Parts of a box, and the range of one value in them."""
-
-    of: Traits
-    names: tuple[str, ...]
-    whole: tuple[Column, Column]
-    quaternions: tuple[tuple[int, ...], ...]
-
-    @property
-    def price(self) -> int:
-        """Return what a look at one part costs."""
-        return len(self.of.trace.steps)
-
-    def ranges(self, low: Column, high: Column) -> Interval:
-        """Return the range of the value in parts."""
-        each = [np.zeros((2, 0))]
-        for n in range(0, low.shape[1], AT_ONCE):
-            own = slice(n, n + AT_ONCE)
-            boxes = {name: (low[k, own], high[k, own]) for k, name in enumerate(self.names)}
-            with np.errstate(all="ignore"):
-                found = enclosed(self.of, boxes, low[:, own].shape[1])
-            each.append(np.array(found.ranges[self.of.trace.results[0]]))
-        least, most = np.concatenate(each, axis=1)
-        return least, most
-
-    def halved(self, low: Column, high: Column, away: float) -> tuple[Column, Column]:
-        """Return parts cut in two, each where that leaves the least nearer to zero than that."""
-        count, middle = low.shape[1], (low + high) / 2
-        best, along = np.full(count, np.inf), np.zeros(count, int)
-        for k in range(len(self.names)):
-            over = np.maximum(
-                *(self._beyond(*half, away) for half in _halves(low, high, middle, k))
-            )
-            over = np.where(low[k] < high[k], over, np.inf)
-            along, best = np.where(over < best, k, along), np.minimum(over, best)
-        at = along, np.arange(count)
-        lower, upper = high.copy(), low.copy()
-        lower[at], upper[at] = middle[at], middle[at]
-        return np.concatenate([low, upper], axis=1), np.concatenate([lower, high], axis=1)
-
-    def _beyond(self, low: Column, high: Column, away: float) -> Column:
-        """Return how far the value may be from all that is on one side, and away from zero."""
-        least, most = self.ranges(low, high)
-        return np.asarray(np.maximum(np.minimum(-least, most) + away, 0.0))
-
-
-def _halves(low: Column, high: Column, middle: Column, k: int) -> Iterator[tuple[Column, Column]]:
-    """Yield the lower and the upper halves of parts along a side."""
-    lower, upper = high.copy(), low.copy()
-    lower[k], upper[k] = middle[k], middle[k]
-    yield low, lower
-    yield upper, high
