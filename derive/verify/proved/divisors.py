@@ -8,6 +8,7 @@ they are made of, so that the same divisor of each stage of a step is as easy as
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
+from math import prod
 
 import numpy as np
 
@@ -69,7 +70,7 @@ def divisors(
     return _walked(library, function, boxes, precision)[1]
 
 
-def results(
+def ends_of_results(
     library: Library,
     function: Program,
     boxes: Mapping[str, tuple[float, float]],
@@ -188,7 +189,7 @@ class Walk:
         if size is None or factors.count(size) != 1:
             return None
         ends = [self.enclosed(n) for n in factors if n != size]
-        most = float(np.prod([np.max(np.abs(e)) for e in ends]))
+        most = prod(float(np.max(np.abs(e))) for e in ends)
         least = float(np.finfo(self.precision.dtype).smallest_subnormal)
         smallest = np.sqrt(least) if self.steps[size].operator == "sqrt" else least
         reach = most * (1 + NEXT) + (len(ends) + 2) * max(1.0, most) * float(least / smallest)
