@@ -1,6 +1,6 @@
 """The equations of one scene for its page: the lecture's, with its own quantities in place."""
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
 
 from sympy import Expr, Symbol
@@ -14,6 +14,8 @@ from derive.lecture.step import Step
 from derive.mechanics.mechanism import Mechanism
 from derive.mechanics.problem import Problem
 
+NEAT = 100
+"""Lines of a function that are written as by hand: those of more are shown as they were derived."""
 # Letters of the lecture for the quantities that every scene calls by a word.
 _LETTERS = {
     "moment": ("M",), "force": ("F",), "attitude": ("q",), "position": ("p",), "velocity": ("v",),
@@ -189,19 +191,26 @@ def passages(mechanism: Mechanism, base: str) -> tuple[Passage, ...]:
     own, written = mechanism.posed(base), written_equations(mechanism, base)
     names = written_names(own)
     names |= {u: names[s] for u, s in written.found.items()}
-    return tuple(_passage(own, base, steps, each, names) for steps, each in written.groups if each)
+    lines = [line for _, each in written.groups for line in each]
+    tidy = neatened if len(lines) <= NEAT else _as_it_stands
+    groups = [(steps, each) for steps, each in written.groups if each]
+    return tuple(_passage(own, base, steps, each, names, tidy) for steps, each in groups)
+
+
+def _as_it_stands(value: Expr) -> Expr:
+    return value
 
 
 def _passage(
     mechanism: Mechanism, base: str, steps: tuple[str, ...], equations: Iterable[Determined],
-    names: Mapping[Symbol, str],
+    names: Mapping[Symbol, str], tidy: Callable[[Expr], Expr],
 ) -> Passage:  # fmt: skip
     label = mechanism.words.sheet.label
     lines = tuple(
         PageEquation(
             f"{base}.{label(s)}".replace(" ", "_"),
             label(s),
-            sympy_equation_mathml(neatened(left), neatened(right), names),
+            sympy_equation_mathml(tidy(left), tidy(right), names),
         )
         for s, left, right in equations
     )

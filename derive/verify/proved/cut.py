@@ -30,8 +30,8 @@ START = 0.1
 """Of the work may be spent on cutting quaternions evenly, before the worst parts are cut."""
 HOPE = 1 / 16
 """Of the work is spent until half of a box must have a bound, or no more is cut."""
-HALF = 0.499
-"""Of a box that stays without a bound: a half or more, however sums are rounded."""
+MOSTLY = 0.51
+"""Of a box is more than its half, whatever rounds."""
 SPECK = 2.0**-60
 """Of a box is a part that is not cut any more for having no bound."""
 PIECES = 8
@@ -148,7 +148,7 @@ class Cutting:
         sides, lacking = parts.highs - parts.lows, np.isinf(bound_of_each(parts))
         sizes = reduce(np.multiply, np.where(sides > 0, sides, 1.0))
         without, whole = sizes[lacking], sizes.sum()
-        return bool(without.sum() > whole * HALF or without.min(initial=whole) < whole * SPECK)
+        return bool(without.sum() > whole * MOSTLY or without.min(initial=whole) < whole * SPECK)
 
     @cached_property
     def peaks(self) -> Peaks:
