@@ -40,7 +40,7 @@ from derive.program.precision import F32, PRECISIONS, Precision
 from derive.program.program import Program, Quantity
 from derive.scene.declaration import DeriveError
 from derive.verify.proved.bounds import ends_in_floats
-from derive.verify.proved.divisors import Divisor, divisors, ends_of_results
+from derive.verify.proved.divisors import Divisor, divisors, ranges_of_results
 from derive.verify.proved.regular import (
     FloatRanges,
     PairOperation,
@@ -194,7 +194,7 @@ def _plans(library: Library, program: Program) -> list[tuple[Program, Quantity]]
 def planned_ranges(library: Library, made: Program, precision: Precision) -> tuple[Divisor, ...]:
     """Return the ranges of all that a plan has, by their names in the function that makes it."""
     given = _given(library, made, precision)
-    return () if isinstance(given, str) else ends_of_results(library, made, given, precision)
+    return () if isinstance(given, str) else ranges_of_results(library, made, given, precision)
 
 
 def _ends(of: dict[str, Quantity], name: str, precision: Precision) -> tuple[float, float]:

@@ -70,7 +70,7 @@ def divisors(
     return _walked(library, function, boxes, precision)[1]
 
 
-def ends_of_results(
+def ranges_of_results(
     library: Library,
     function: Program,
     boxes: Mapping[str, tuple[float, float]],
