@@ -1,8 +1,9 @@
 """A function over many members as C: structures of arrays, which compilers turn into vectors.
 
-A component of member k stands at ``[component * stride + k]``. A member gets what the scene's own
-function gives, to the last bit: the same operations, in loops without branches. Angles that our own
-sines do not serve, loops and ``atan2`` are left to the scene's own function.
+A component of member k stands at ``[component * stride + k]``, k in C ``k_``, which no name of a
+scene is. A member gets what the scene's own function gives, to the last bit: the same operations,
+in loops without branches. Angles that our own sines do not serve, loops and ``atan2`` are left to
+the scene's own function.
 """
 
 from collections.abc import Iterator, Mapping
@@ -174,13 +175,17 @@ def members_definition(of: OverMembers) -> str:
                   for n, at in enumerate(read.values())]  # fmt: skip
     elif vectors:
         lines += [f"const {scalar} made_{n} = constants->{c};" for n, c in enumerate(read)]
-    lines.append("ptrdiff_t k;")
+    lines.append("ptrdiff_t k_;")
     if not vectors:
-        lines += ["for (k = 0; k < members; ++k) {", *within_braces(_called(of, "in_{0}[k]")), "}"]
+        lines += [
+            "for (k_ = 0; k_ < members; ++k_) {",
+            *within_braces(_called(of, "in_{0}[k_]")),
+            "}",
+        ]
     else:
         lines += _kept(of) if of.sines else _looped(of)
     if not any("stride" in line for line in lines):
-        lines.insert(lines.index("ptrdiff_t k;") + 1, "(void)stride;")
+        lines.insert(lines.index("ptrdiff_t k_;") + 1, "(void)stride;")
     names = [q.name for q in (*of.program.inputs, *of.program.outputs)]
     require_free(of.scene, of.program.name, names, _own(of))
     return braced(members_prototype(of), lines)
@@ -188,7 +193,7 @@ def members_definition(of: OverMembers) -> str:
 
 def _own(of: OverMembers) -> Iterator[str]:
     """Yield the names of what a function over members declares itself."""
-    yield from ("members", "stride", "k", "start", "end", "far", "any", "own")
+    yield from ("members", "stride", "k_", "start", "end", "far", "any", "own")
     for name, many in (("in", of.given), ("out", of.found), ("made", of.read), ("kept", of.given)):
         yield from (f"{name}_{n}" for n in range(len(many)))
     yield from (f"found_{n}" for n in range(len(of.found)))
@@ -198,7 +203,7 @@ def _own(of: OverMembers) -> Iterator[str]:
 def _looped(of: OverMembers) -> list[str]:
     return [
         "DERIVE_MEMBERS",
-        "for (k = 0; k < members; ++k) {",
+        "for (k_ = 0; k_ < members; ++k_) {",
         *within_braces([*_laned(of, ""), *_stored(of)]),
         "}",
     ]
@@ -208,9 +213,9 @@ def _kept(of: OverMembers) -> list[str]:
     """Return a loop by parts: inputs are kept, as results may lie over them, for larger angles."""
     many = MEMBERS_KEPT
     kept = [f"{of.precision.scalar} kept_{n}[{many}];" for n in range(len(of.given))]
-    keep = [f"kept_{n}[k - start] = in_{n}[k];" for n in range(len(of.given))]
-    again = _called(of, "kept_{0}[k - start]")
-    work = [*keep, *_laned(of, "far[k - start] = "), *_stored(of)]
+    keep = [f"kept_{n}[k_ - start] = in_{n}[k_];" for n in range(len(of.given))]
+    again = _called(of, "kept_{0}[k_ - start]")
+    work = [*keep, *_laned(of, "far[k_ - start] = "), *_stored(of)]
     return [
         *kept,
         f"int far[{many}];",
@@ -219,14 +224,14 @@ def _kept(of: OverMembers) -> list[str]:
         f"    const ptrdiff_t end = members - start < {many} ? members : start + {many};",
         "    int any = 0;",
         "    DERIVE_MEMBERS",
-        "    for (k = start; k < end; ++k) {",
+        "    for (k_ = start; k_ < end; ++k_) {",
         *within_braces(within_braces(work)),
         "    }",
-        "    for (k = start; k < end; ++k) {",
-        "        any |= far[k - start];",
+        "    for (k_ = start; k_ < end; ++k_) {",
+        "        any |= far[k_ - start];",
         "    }",
-        "    for (k = start; any != 0 && k < end; ++k) {",
-        "        if (far[k - start] != 0) {",
+        "    for (k_ = start; any != 0 && k_ < end; ++k_) {",
+        "        if (far[k_ - start] != 0) {",
         *within_braces(within_braces(within_braces(again))),
         "        }",
         "    }",
@@ -237,8 +242,8 @@ def _kept(of: OverMembers) -> list[str]:
 def _laned(of: OverMembers, into: str) -> list[str]:
     """Return the call of the operations for one member."""
     many = range(len(of.found))
-    made = [f"made_{n}[k]" if of.each else f"made_{n}" for n in range(len(of.read))]
-    given = [f"in_{n}[k]" for n in of.asked]
+    made = [f"made_{n}[k_]" if of.each else f"made_{n}" for n in range(len(of.read))]
+    given = [f"in_{n}[k_]" for n in of.asked]
     arguments = [*made, *given, *of.common, *(f"&found_{j}" for j in many)]
     names = ", ".join(f"found_{j}" for j in many)
     call = declaration(f"{into}{of.lane}", arguments)
@@ -246,7 +251,7 @@ def _laned(of: OverMembers, into: str) -> list[str]:
 
 
 def _stored(of: OverMembers) -> list[str]:
-    return [f"out_{j}[k] = found_{j};" for j in range(len(of.found))]
+    return [f"out_{j}[k_] = found_{j};" for j in range(len(of.found))]
 
 
 def _called(of: OverMembers, read: str) -> list[str]:
@@ -272,7 +277,7 @@ def _called(of: OverMembers, read: str) -> list[str]:
         many = range(len(q.components))
         results += [f"{q.name}_own[{i}]" for i in many] if q.shape else [f"{q.name}_own"]
     call = declaration(CNames(of.scene).symbol(of.program.name, of.precision), arguments)
-    stores = [f"out_{j}[k] = {result};" for j, result in enumerate(results)]
+    stores = [f"out_{j}[k_] = {result};" for j, result in enumerate(results)]
     return [*lines, *f"{call};".split("\n"), *stores]
 
 

@@ -10,7 +10,7 @@ def behind_first(place: int) -> str:
 
 def at_member(place: int) -> str:
     """Return the index of a component of member k."""
-    return "k" if place == 0 else f"k{behind_first(place)}"
+    return "k_" if place == 0 else f"k_{behind_first(place)}"
 
 
 def within_braces(lines: Sequence[str]) -> list[str]:

@@ -21,7 +21,7 @@ def setup_prototype(program: Program, scene: str, precision: Precision) -> str:
 def setup_definition(program: Program, scene: str, precision: Precision) -> str:
     """Return set-up over members: the scene's own, member after member."""
     own = places(program.outputs)
-    values = [f"{q.name}[k]" for q in program.inputs]
+    values = [f"{q.name}[k_]" for q in program.inputs]
     if any(q.shape for q in program.inputs):
         raise ValueError("parameters are numbers")
     call = declaration(CNames(scene).symbol("setup", precision), [*values, "&own"])
@@ -29,20 +29,20 @@ def setup_definition(program: Program, scene: str, precision: Precision) -> str:
         f"const int said = {call};",
         *(f"constants[{at_member(i)}] = own.{c};" for i, c in enumerate(own)),
         "if (status) {",
-        "    status[k] = said;",
+        "    status[k_] = said;",
         "}",
         "refused += said != 0;",
     ]
     lines = [
         f"{scene}_constants_{precision.name} own;",
-        "ptrdiff_t k, refused = 0;",
+        "ptrdiff_t k_, refused = 0;",
         *([] if any("stride" in line for line in loop) else ["(void)stride;"]),
-        "for (k = 0; k < members; ++k) {",
+        "for (k_ = 0; k_ < members; ++k_) {",
         *within_braces(loop),
         "}",
         "return refused;",
     ]
     names = [q.name for q in program.inputs]
-    taken = ("members", "stride", "own", "k", "refused", "said", "constants", "status")
+    taken = ("members", "stride", "own", "k_", "refused", "said", "constants", "status")
     require_free(scene, "setup", names, taken)
     return braced(setup_prototype(program, scene, precision), lines)

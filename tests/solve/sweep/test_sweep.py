@@ -196,3 +196,18 @@ def test_the_page_has_a_line_that_solve_replays(
     assert f"at {top.column('ended_at').max():.10g}"[:10] in capsys.readouterr().out
     assert KEPT[0] in page
     assert replace(top, ended={"not finite": 2}).unfinished == 2
+
+
+def test_a_parameter_may_be_called_as_an_index_is(tmp_path: Path) -> None:
+    each = {"m": {"unit": "kg", "range": [1, 2]}, "k": {"unit": "N/m", "range": [1, 2]}}
+    load = {"on": "block", "force": ["-k*x", "?a", "?c"]}
+    scene = derive.load({
+        "wanted": ["step_rk4", "kinetic_energy"], "parameters": each,
+        "coordinates": {"x": {"unit": "m", "range": [-1, 1]}},
+        "frames": {"block": {"origin": ["x", "0", "0"]}},
+        "bodies": {"block": {"frame": "block", "shape": "point", "mass": "m"}},
+        "loads": {"spring": load},
+    }, name="spring")  # fmt: skip
+    start = {"m": 1.0, "x": 1.0, "x_dot": 0.0}
+    found = scene.sweep({"k": "1..2:2"}, tmp_path / "runs", 1.0, ["x@end"], start, 1, step=0.01)
+    assert sorted(columns(found)["x@end"]) == pytest.approx([np.cos(np.sqrt(2)), np.cos(1)])
