@@ -111,7 +111,7 @@ int free_body_setup_f64(double I_xx, double I_yy, double I_zz, double I_xy, doub
  *            200000 samples of the ranges, 65536 searched from the worst); at 8348 hard samples
  *            8.1 u (of omega_dot, turned, ill-conditioned).
  * Bound: proved, absolute, by rounding alone, on the whole ranges: omega_dot 9.7e-14 rad/s^2 (seen
- *            6e-14).
+ *            5.7e-14).
  * Cost: 13 add, 4 sub, 23 mul.
  * On Cortex-M0+, -O2: 9157 to 9512 instructions, 676 B of code, 152 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,
@@ -131,7 +131,7 @@ void free_body_acceleration_f64(const free_body_constants_f64 *constants, const 
  *            200000 samples of the ranges, 65536 searched from the worst); at 8348 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: omega_dot 6.2e-14 rad/s^2 (seen
- *            4.5e-14), jacobian 3.9e-15 (seen 3.3e-15).
+ *            3.6e-14), jacobian 3.9e-15 (seen 3.4e-15).
  * Cost: 21 add, 12 sub, 48 mul.
  * On Cortex-M0+, -O2: 19049 to 19552 instructions, 1548 B of code, 216 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, constant_mass, newton,

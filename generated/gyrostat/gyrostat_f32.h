@@ -177,9 +177,9 @@ void gyrostat_state_rate_f32(const gyrostat_constants_f32 *constants, float thet
  * Error: median 0.72, largest 14 u of the largest product or sum in the equation (of omega_dot;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8354 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: coordinate_rates 8.4e-06 rad/s
- *            (seen 5.8e-06), omega_dot 1.3e-05 rad/s^2 (seen 7.9e-06), wheel_accelerations 1.9e-05
- *            rad/s^2 (seen 1.3e-05), jacobian 9.6e-05 (seen 4.5e-05); assumed: sines and cosines
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: coordinate_rates 8e-06 rad/s
+ *            (seen 5.9e-06), omega_dot 1.3e-05 rad/s^2 (seen 8e-06), wheel_accelerations 1.9e-05
+ *            rad/s^2 (seen 1.3e-05), jacobian 7.5e-05 (seen 4.5e-05); assumed: sines and cosines
  *            of our own within 0.79 ulp.
  * Singular: at theta = pi/2 + k pi, psi_dot, phi_dot, jacobian infinite, no number or beyond all
  *            measure.

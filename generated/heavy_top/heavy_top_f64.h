@@ -84,7 +84,7 @@ int heavy_top_setup_f64(double A, double C, double m, double g, double l,
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: coordinate_rates 2.2e-14 rad/s
- *            (seen 1.7e-14), omega_dot 3.7e-13 rad/s^2 (seen 2.8e-13); assumed: sines and cosines
+ *            (seen 1.6e-14), omega_dot 3.6e-13 rad/s^2 (seen 2.8e-13); assumed: sines and cosines
  *            of our own within 0.79 ulp.
  * Singular: at theta = k pi, psi_dot, phi_dot, omega_dot_x, omega_dot_y infinite, no number or
  *            beyond all measure.
@@ -110,7 +110,7 @@ void heavy_top_state_rate_f64(const heavy_top_constants_f64 *constants, double t
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: coordinate_rates 2.7e-14 rad/s
- *            (seen 2e-14), omega_dot 4.2e-13 rad/s^2 (seen 3.3e-13), jacobian 2.9e-12 (seen
+ *            (seen 2e-14), omega_dot 4.1e-13 rad/s^2 (seen 3.3e-13), jacobian 2.9e-12 (seen
  *            2.1e-12); assumed: sines and cosines of our own within 0.79 ulp.
  * Singular: at theta = k pi, psi_dot, phi_dot, omega_dot_x, omega_dot_y, jacobian infinite, no
  *            number or beyond all measure.

@@ -309,8 +309,8 @@ void quadrotor_gyro_f32(const quadrotor_constants_f32 *constants, const float w[
  *            product of what the step adds, by rounding alone (of w_next; 200000 samples of the
  *            ranges, 65536 searched from the worst); at 8270 hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: p_next 3.9e-06 m (seen
- *            3.8e-06), p_dot_next 1.4e-06 m/s (seen 6.2e-07), w_next 1.5e-06 rad/s (seen 7.8e-07),
- *            s_next 0.00011 rad/s (seen 8.7e-05), attitude_hull_next 3.1e-07 (seen 1.5e-07);
+ *            3.8e-06), p_dot_next 1.4e-06 m/s (seen 6.1e-07), w_next 1.5e-06 rad/s (seen 8.2e-07),
+ *            s_next 0.00011 rad/s (seen 7.9e-05), attitude_hull_next 3.1e-07 (seen 1.6e-07);
  *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001.
  * Singular: at attitude_hull = 0, attitude_hull_next infinite, no number or beyond all measure.
  * Cost: 176 add, 110 sub, 311 mul, 1 div, 1 sqrt.

@@ -110,9 +110,9 @@ int rigid_body_steps_setup_f32(float m, float I_xx, float I_yy, float I_zz, floa
  *            the ranges, 65536 searched from the worst); at 8282 hard samples 9.5 u (of
  *            attitude_next, turned, ill-conditioned).
  * Bound: proved, absolute, by rounding alone, on the whole ranges: position_next 4.1e-06 m (seen
- *            4e-06), attitude_next 6.1e-07 (seen 1.5e-07), velocity_next 4.3e-06 m/s (seen
- *            2.1e-06), omega_next 3e-06 rad/s (seen 9.8e-07); assumed: quaternions given with
- *            |q|^2 in 0.999 .. 1.001.
+ *            4e-06), attitude_next 6.2e-07 (seen 1.5e-07), velocity_next 4.3e-06 m/s (seen
+ *            2.1e-06), omega_next 3e-06 rad/s (seen 1e-06); assumed: quaternions given with |q|^2
+ *            in 0.999 .. 1.001.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 204 add, 64 sub, 363 mul, 1 div, 4 neg, 1 sqrt.
  * On Cortex-M0+, -O2: 62725 to 64119 instructions, 1528 B of code, 16 B of tables, 408 B of stack.

@@ -111,8 +111,8 @@ int rigid_body_steps_setup_f64(double m, double I_xx, double I_yy, double I_zz, 
  *            the ranges, 65536 searched from the worst); at 8282 hard samples 1.5e+03 u (of
  *            attitude_next, turned, ill-conditioned).
  * Bound: proved, absolute, by rounding alone, on the whole ranges: position_next 7.7e-15 m (seen
- *            7.4e-15), attitude_next 1.2e-15 (seen 2.7e-16), velocity_next 8e-15 m/s (seen
- *            3.8e-15), omega_next 5.6e-15 rad/s (seen 1.6e-15); assumed: quaternions given with
+ *            7.5e-15), attitude_next 1.2e-15 (seen 2.7e-16), velocity_next 7.9e-15 m/s (seen
+ *            3.8e-15), omega_next 5.6e-15 rad/s (seen 1.8e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 204 add, 64 sub, 363 mul, 1 div, 4 neg, 1 sqrt.

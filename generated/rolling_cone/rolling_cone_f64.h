@@ -97,7 +97,7 @@ void rolling_cone_kinetic_energy_f64(const rolling_cone_constants_f64 *constants
  * In this scene: x_N = lever/ground_z
  * Error: median 0.48, largest 3.2 u of the largest product or sum in the equation (of x_N; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8336 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: x_N 6.7e-16 m (seen 6.4e-16).
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: x_N 6.6e-16 m (seen 6.4e-16).
  * Cost: 1 add, 2 mul.
  * On Cortex-M0+, -O2: 689 to 747 instructions, 36 B of code, 80 B of stack.
  * Rests on: axes_are_orthonormal, body_triad, body_triad_is_orthonormal, composed_turns,
@@ -118,7 +118,7 @@ void rolling_cone_x_N_f64(const rolling_cone_constants_f64 *constants, double W,
  * In this scene: steady = lever/ground_z - h/cos(a)
  * Error: median 0.31, largest 3 u of the largest product or sum in the equation (of steady; 200000
  *            samples of the ranges, 65536 searched from the worst); at 8336 hard samples no more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: steady 5.6e-16 m (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: steady 5.5e-16 m (seen
  *            5.3e-16).
  * Cost: 1 add, 2 mul.
  * On Cortex-M0+, -O2: 705 to 777 instructions, 36 B of code, 80 B of stack.

@@ -114,7 +114,7 @@ void sleeping_top_linearised_f64(const sleeping_top_constants_f64 *constants, do
  *            200000 samples of the ranges, 65536 searched from the worst); at 8318 hard samples no
  *            more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: alpha_ddot 1.2e-13 rad/s^2
- *            (seen 8.3e-14), beta_ddot 8e-14 rad/s^2 (seen 5.9e-14); assumed: sines and cosines of
+ *            (seen 9e-14), beta_ddot 8e-14 rad/s^2 (seen 5.8e-14); assumed: sines and cosines of
  *            our own within 0.79 ulp.
  * Singular: at beta = pi/2 + k pi, alpha_ddot infinite, no number or beyond all measure.
  * Cost: 4 sub, 9 mul, 1 div, 2 sin, 2 cos.
@@ -171,9 +171,9 @@ void sleeping_top_energy_f64(const sleeping_top_constants_f64 *constants, double
  *            product of what the step adds, by rounding alone (of alpha_dot_next; 200000 samples
  *            of the ranges, 65536 searched from the worst); at 8246 hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: alpha_next 4.7e-17 rad (seen
- *            3.5e-17), alpha_dot_next 2.6e-15 rad/s (seen 9e-16), beta_next 4.4e-17 rad (seen
- *            3.3e-17), beta_dot_next 2.2e-15 rad/s (seen 8.5e-16); assumed: sines and cosines of
- *            our own within 0.79 ulp.
+ *            3.4e-17), alpha_dot_next 2.6e-15 rad/s (seen 1e-15), beta_next 4.4e-17 rad (seen
+ *            3.3e-17), beta_dot_next 2.2e-15 rad/s (seen 8e-16); assumed: sines and cosines of our
+ *            own within 0.79 ulp.
  * Singular: at beta = pi/2 + k pi, alpha_next, alpha_dot_next, beta_next, beta_dot_next infinite,
  *            no number or beyond all measure.
  * Cost: 28 add, 16 sub, 64 mul, 4 div, 8 sin, 8 cos.

@@ -116,7 +116,7 @@ void torque_free_axisymmetric_body_rate_f32(const torque_free_axisymmetric_const
  * Error: median 0.61, largest 4.2 u of the largest product or sum in the equation (of tan_theta;
  *            200000 samples of the ranges, 65536 searched from the worst); at 8336 hard samples no
  *            more.
- * Bound: proved, absolute, by rounding alone, on the whole ranges: tan_theta 9.3e-08 (seen
+ * Bound: proved, absolute, by rounding alone, on the whole ranges: tan_theta 8.8e-08 (seen
  *            7.6e-08).
  * Singular: at w_z = 0, tan_theta infinite, no number or beyond all measure.
  * Cost: 1 add, 5 mul, 1 div, 1 sqrt.

@@ -322,7 +322,7 @@ void tumbling_body_step_rk4_f32(const tumbling_body_constants_f32 *constants,
  *            product of what the step adds, by rounding alone (of jacobian; 200000 samples of the
  *            ranges, 65536 searched from the worst); at 8270 hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 4.5e-07 (seen
- *            1.8e-07), omega_next 1.1e-06 rad/s (seen 7.6e-07), jacobian 5.3e-06 (seen 5.5e-07);
+ *            1.8e-07), omega_next 1.1e-06 rad/s (seen 7.6e-07), jacobian 4.9e-06 (seen 5.5e-07);
  *            assumed: quaternions given with |q|^2 in 0.999 .. 1.001, divisors |q|^2 in 0.9 ..
  *            1.1.
  * Singular: at attitude = 0, attitude_next, jacobian infinite, no number or beyond all measure.

@@ -133,7 +133,7 @@ void tumbling_disc_step_dmv_f64(const double plan[6], const double attitude[4],
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 4.7e-16 (seen
- *            1.9e-16), omega_next 3.5e-15 rad/s (seen 2.1e-15); assumed: quaternions given with
+ *            1.8e-16), omega_next 3.5e-15 rad/s (seen 2.2e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 40 add, 9 sub, 55 mul, 5 div, 5 neg.
  * On Cortex-M0+, -O2: 26294 to 26845 instructions, 1584 B of code, 232 B of stack.
@@ -159,7 +159,7 @@ void tumbling_disc_step_split_f64(const tumbling_disc_constants_f64 *constants,
  *            product of what the step adds, by rounding alone (of attitude_next; 200000 samples of
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
  * Bound: proved, absolute, by rounding alone, on the whole ranges: attitude_next 7.8e-16 (seen
- *            3.2e-16), omega_next 2.3e-15 rad/s (seen 1.6e-15); assumed: quaternions given with
+ *            3.2e-16), omega_next 2.3e-15 rad/s (seen 1.8e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 52 add, 22 sub, 88 mul, 1 div, 1 sqrt.

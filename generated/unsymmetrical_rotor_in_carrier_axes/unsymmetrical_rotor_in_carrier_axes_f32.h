@@ -182,7 +182,7 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_f32(
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples
  *            1.2e+06 u (of rate_in_axes, thin rod).
  * Bound: proved, absolute, by rounding alone, on the whole ranges: rate_in_axes 0.00035 N m (seen
- *            0.00023), rate_absolute 0.00038 N m (seen 0.00029); assumed: sines and cosines of our
+ *            0.00023), rate_absolute 0.00035 N m (seen 0.00029); assumed: sines and cosines of our
  *            own within 0.79 ulp.
  * Cost: 3 add, 3 sub, 16 mul, 1 sin, 1 cos.
  * On Cortex-M0+, -O2: 5932 to 6729 instructions, 824 B of code, 144 B of stack.

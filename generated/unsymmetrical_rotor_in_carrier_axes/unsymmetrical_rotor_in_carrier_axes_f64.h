@@ -107,7 +107,7 @@ void unsymmetrical_rotor_in_carrier_axes_moment_f64(const unsymmetrical_rotor_in
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples
  *            5.8e+05 u (of moment, thin rod).
  * Bound: proved, absolute, by rounding alone, on the whole ranges: moment 6.8e-13 N m (seen
- *            5.1e-13), jacobian 7.7e-13 (seen 5.3e-13); assumed: sines and cosines of our own
+ *            5.2e-13), jacobian 7.7e-13 (seen 5.7e-13); assumed: sines and cosines of our own
  *            within 0.79 ulp.
  * Cost: 6 add, 7 sub, 27 mul, 1 neg, 1 sin, 1 cos.
  * On Cortex-M0+, -O2: 19539 to 21352 instructions, 1632 B of code, 224 B of stack.
@@ -180,7 +180,7 @@ void unsymmetrical_rotor_in_carrier_axes_angular_momentum_f64(
  *            200000 samples of the ranges, 65536 searched from the worst); at 8342 hard samples
  *            1.2e+06 u (of rate_in_axes, thin rod).
  * Bound: proved, absolute, by rounding alone, on the whole ranges: rate_in_axes 6.4e-13 N m (seen
- *            4.1e-13), rate_absolute 7.1e-13 N m (seen 5.2e-13); assumed: sines and cosines of our
+ *            4.2e-13), rate_absolute 6.5e-13 N m (seen 5.5e-13); assumed: sines and cosines of our
  *            own within 0.79 ulp.
  * Cost: 3 add, 3 sub, 16 mul, 1 sin, 1 cos.
  * On Cortex-M0+, -O2: 15201 to 16919 instructions, 1316 B of code, 240 B of stack.
