@@ -23,6 +23,8 @@ PART = 24
 """Of a table of long tests, continuous integration runs a row, or one of so many."""
 SLOW = {"acrobot", "quadrotor", "rattleback"}
 """Scenes that take seconds to derive: their rows run with ``-m long``."""
+BENCH = Path(__file__).parent / "bench"
+"""Tests of what only the checkout has run with ``-m long``."""
 SCENES = {*catalogue(), *(path.stem for path in Path(__file__).parent.rglob("*.toml"))}
 
 
@@ -46,7 +48,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     short, long = (defaultdict[str, list[pytest.Item]](list) for _ in range(2))
     for item in items:
         aside = any(map(item.get_closest_marker, ("browser", "target")))
-        if scene(item) in SLOW and not aside:
+        if (scene(item) in SLOW or item.path.is_relative_to(BENCH)) and not aside:
             item.add_marker("long")
         if not aside:
             tables = long if item.get_closest_marker("long") else short

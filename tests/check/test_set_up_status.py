@@ -137,6 +137,7 @@ def test_a_status_names_the_rule(values: Sequence[float], status: int) -> None:
     assert replayed_statuses(setup, [given], F64) == [status]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("precision", "condition"), [(F64, 1e12), (F32, 1e6)])
 def test_no_definite_tensor_is_refused_for_being_close_to_singular(
     precision: Precision, condition: float

@@ -46,6 +46,7 @@ def test_no_sample_leaves_a_range_that_is_proved(name: str, function: str) -> No
     assert all(d.low > 0 or d.high < 0 or d.quotient for d in ranges)
 
 
+@pytest.mark.long
 def test_a_wrong_range_is_noticed() -> None:
     """Half of one, or one of the other sign: samples say what they found."""
     library, (whole,) = library_of(NAME), proved(NAME, FUNCTION)

@@ -115,6 +115,7 @@ def test_the_folder_of_a_scene_that_is_no_more_is_left_over(tmp_path):
     assert all(d.left_over for d in found)
 
 
+@pytest.mark.long
 def test_an_edit_of_the_scene_fails_the_check(made, tmp_path, capsys):
     text = (
         Path(__file__).parents[2] / "derive" / "scene" / "catalogue" / f"{SCENE}.toml"

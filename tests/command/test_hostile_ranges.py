@@ -111,6 +111,7 @@ lengths = ["r", "2*r", "3*r"]
 """
 
 
+@pytest.mark.long
 def test_a_small_energy_that_set_up_cannot_compute_is_not_called_too_large() -> None:
     with pytest.raises(SceneError, match="a value on the way to it, in set-up too, is too large"):
         made(library(parse_scene(HEAVY, "heavy")), FEW)

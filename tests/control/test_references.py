@@ -26,6 +26,7 @@ def slewed(name: str, starts: int = 16) -> derive.Trajectory:
     return derive.steer(craft(), inertia(case["inertia"]), turn, limits=limits, starts=starts)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", SLEW.values())
 def test_a_slew_takes_the_time_that_is_known(name: str) -> None:
     trajectory, known = slewed(name, 3 if name == QUICK else 16), KNOWN["min_time"][name]

@@ -115,6 +115,7 @@ def test_angles_beyond_our_own_sines_and_no_numbers_have_those_bits_too(
         assert differing(returned_at(made, precision, at, own), found) == []
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("scene", ["heavy_top", "satellite"])
 def test_any_number_of_members_at_any_address_and_results_over_inputs(scene: str) -> None:
     made, function = library_of(scene), "state_rate" if scene == "heavy_top" else "step_rk4"
@@ -217,6 +218,7 @@ def test_the_compiler_reports_that_every_loop_became_vectors(
         assert [name for line, name in loops.items() if line not in reported] == []
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("compiler", COMPILERS)
 def test_the_report_tells_of_loops_that_are_none(compiler: str, tmp_path: Path) -> None:
     made = library_of("heavy_top")

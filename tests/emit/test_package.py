@@ -213,6 +213,7 @@ def test_the_command_writes_a_package_and_then_writes_it_again(
     assert not Path("generated").exists()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "typed", ["ball.toml --precision float", "ball.toml --for make", "other.toml"]
 )

@@ -27,6 +27,7 @@ def test_a_constant_with_the_name_of_a_parameter_is_that_parameter(name: str) ->
     assert {n: r for n, r in made_of.items() if n in of_scene and r != n} == {}
 
 
+@pytest.mark.long
 def test_a_formula_of_a_constant_tells_a_parameter_from_an_entry_of_the_inverse() -> None:
     """This scene calls entries of its inertia tensor as we call those of the inverse."""
     says = library_of("reaction_wheel_satellite").constants

@@ -75,6 +75,7 @@ def test_scheduled_operations_compute_what_was_built(trees, point):
     assert value_at(g, values, point) == [plain(tree, point) for tree in trees]
 
 
+@pytest.mark.long
 @given(expressions, points)
 def test_multiplying_out_changes_no_value(tree, point):
     g, leaves = graph_with_leaves()

@@ -102,6 +102,7 @@ def test_a_hinge_stands_on_its_axis_nearest_to_what_carries_it() -> None:
     assert len(list(by_links(own, "drives"))) == 1
 
 
+@pytest.mark.long
 def test_reactions_that_balances_hold_beside_what_is_sought_are_left_to_them(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -107,6 +107,7 @@ def test_a_blade_by_points_is_the_blade_by_its_formula() -> None:
     assert verdicts(made(by_points)) == {"holds"}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("name", "row"), [("five_bars", "c_3"), ("bricard", "line")])
 def test_redundant_rows_are_dropped_and_named(name: str, row: str) -> None:
     (said,) = mechanism(parse_scene(TEXTS[name], "held")).redundant

@@ -88,6 +88,7 @@ def test_a_force_that_shares_its_part_with_others_cannot_be_told() -> None:
         library(parse_scene(text, "held"))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("zero", ["q_1 - q_1", "sin(q_1)^2 + cos(q_1)^2 - 1"])
 def test_what_is_always_0_is_left_out(zero: str) -> None:
     loop = FOUR.replace(', "d_x"', "").partition("[constraints")[0]

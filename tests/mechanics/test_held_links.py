@@ -34,6 +34,7 @@ def test_machines_with_constraints_cost_less_than_by_kane_and_cse(name: str) -> 
     assert own["accelerations"].flops() < BY_SYMPY[name]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("wrong", ["_put", "_pivot_solved"])
 def test_a_way_that_answers_otherwise_than_the_balances_is_none(
     wrong: str, monkeypatch: pytest.MonkeyPatch

@@ -66,6 +66,7 @@ def test_what_rounding_may_have_put_beside_another_is_left_out_and_said_to_be_of
     assert says.endswith(" of a range, as rounded numbers are, and is left out: 'two' is 0")
 
 
+@pytest.mark.long
 def test_what_contradicts_another_is_refused() -> None:
     with pytest.raises(SceneError, match="no state of the declared ranges was found that fulfils"):
         made("x - y - gap")
@@ -84,6 +85,7 @@ def test_doubles_take_what_nearly_says_the_same_for_the_same(
     assert len(own.redundant) == 1
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("other", ["(x - y)^2", "(x - y)*(x^3 - y^3)"])
 def test_a_square_that_others_hold_is_left_out_and_alone_it_is_refused(other: str) -> None:
     (says,) = made(other).mechanism.redundant

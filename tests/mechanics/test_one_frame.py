@@ -88,6 +88,7 @@ def test_a_body_that_is_not_fixed_in_a_held_frame_is_not_welded(old: str, new: s
         library(parse_scene(FREE.replace(old, new), "rod"))
 
 
+@pytest.mark.long
 def test_no_scene_that_needed_none_has_a_weld() -> None:
     for name, text in texts().items():
         try:
@@ -154,6 +155,7 @@ def test_a_single_body_has_a_mass() -> None:
         parse_scene(short, "ball")
 
 
+@pytest.mark.long
 def test_a_wheel_without_mass_turns_the_hull_back() -> None:
     found = load(tomllib.loads(TEXT), "sat").solve(VALUES)
     assert found.unanswered == {}

@@ -97,6 +97,7 @@ def test_a_pole_that_the_machine_has_is_named_with_its_place() -> None:
     assert says.endswith(", theta = 0")
 
 
+@pytest.mark.long
 def test_where_the_machine_itself_has_a_pole_nothing_is_asked_of_its_functions(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -81,6 +81,7 @@ def test_a_machine_of_any_size_has_the_functions_of_one_of_size_1(sizes: dict[st
     assert inputs(made(DISC, **sizes)) == inputs(made(DISC))
 
 
+@pytest.mark.long
 def test_a_spring_of_any_stiffness_leaves_the_functions_as_they_are() -> None:
     plain = made(DISC, more=SPRING.format(k=2))
     for k in ("2e-30", "2e30", "2e300"):

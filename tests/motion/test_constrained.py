@@ -73,6 +73,7 @@ constraints.c.zero = "ZERO"
 """
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("zero", ["z_dot - v", "x_dot^2 + z_dot^2 - v^2"])
 def test_a_formula_of_rates_may_be_any_and_what_enforces_it_works(zero: str) -> None:
     own = library(parse_scene(DRIVEN.replace("ZERO", zero), "driven"))
@@ -106,6 +107,7 @@ MUTANTS = {"no correction of rates": ("_driven", _driven_by_nothing),
            "half a correction": ("_corrected", _half)}  # fmt: skip
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("mutant", MUTANTS)
 def test_a_step_that_does_not_come_back_is_noticed(
     mutant: str, monkeypatch: pytest.MonkeyPatch

@@ -110,6 +110,7 @@ def test_the_column_costs_a_principal_body_at_most_276_operations() -> None:
         assert made.flops() - plain.flops() <= 276
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("length", [0.0, 0.05])
 def test_casadi_differentiates_the_step_to_the_same_column(length: float, tmp_path: Path) -> None:
     module = imported("minimum_time_casadi", casadi_file(trial()), tmp_path)

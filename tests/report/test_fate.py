@@ -57,6 +57,7 @@ def test_motions_that_long_steps_cannot_follow_have_an_end(text: str, tmp_path: 
     assert {*found.each} == {ENDS}
 
 
+@pytest.mark.long
 def test_motions_beside_a_pole_are_told_from_those_that_keep_away(tmp_path: Path) -> None:
     driver, start = of(GIMBALS.format(), tmp_path)
     found = fates(driver, start, 1.0, 10.0)

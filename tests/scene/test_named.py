@@ -173,6 +173,7 @@ def test_names_that_double_each_other_end_in_a_sentence_at_once() -> None:
         parse_scene(NAMED.replace("[formulas]", f'[formulas]\n{tall}\nd90 = "theta"'), "contact")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("text", [NAMED, SHORT])
 def test_odd_formulas_are_read_or_refused_in_one_sentence(text: str) -> None:
     document = tomllib.loads(text, parse_float=Decimal)

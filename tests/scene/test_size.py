@@ -20,6 +20,7 @@ def chain(count: int) -> str:
     return f"{head}{coordinates}\n[frames]\n{frames}\n[bodies]\n{bodies}\n"
 
 
+@pytest.mark.long
 def test_units_are_read_in_proportion_to_the_coordinates(monkeypatch: pytest.MonkeyPatch) -> None:
     found = []
     for count in (50, 200):

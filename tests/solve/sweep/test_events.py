@@ -30,6 +30,7 @@ def swept(folder: Path, stop: str, step: float, **more: Any) -> derive.Ensemble:
                            **told | more)  # fmt: skip
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("stop", "at"), [(GRAZES, BRIEFLY), ("q = 0.5", 0.5)])
 @pytest.mark.parametrize("step", [0.25, 0.0625, 0.01])
 def test_a_member_stops_where_an_equation_holds_first(
