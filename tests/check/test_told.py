@@ -35,7 +35,7 @@ def proved(name: str, function: str, **ends: tuple[float, float]) -> tuple[Divis
 
 @pytest.mark.parametrize(("name", "function"), [
     (NAME, FUNCTION), ("gyrostat", "state_rate"), ("rolling_disc", "state_rate"),
-    (SCALED, "flow_exact"), (SCALED, "plan_dmv"), ("attitude", "quaternion_normalise"),
+    (SCALED, "flow_exact"), (SCALED, "plan_dmv"),
     pytest.param("acrobot", "state_rate", marks=pytest.mark.long),
 ])  # fmt: skip
 def test_no_sample_leaves_a_range_that_is_proved(name: str, function: str) -> None:

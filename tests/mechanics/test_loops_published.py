@@ -1,6 +1,7 @@
 """Loops of the literature: published figures, closed forms, and the motion that they give."""
 
-from collections.abc import Callable, Mapping, Sequence
+import tomllib
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -47,38 +48,31 @@ FOLLOWED = 1e-6  # of what an integrator of index 3 finds for accelerations and 
 AGREED = 3e-6  # of motion that is not brought back, by an integrator of relative tolerance 1e-10
 
 
-def text_of(name: str, *wanted: str) -> str:
-    text = (SCENES / f"{name}.toml").read_text(encoding="utf-8")
-    asked = ", ".join(f'"{one}"' for one in wanted)
-    return text.replace('wanted = ["accelerations"]', f"wanted = [{asked}]")
-
-
-def answered(name: str, given: Mapping[str, float], *beside: str) -> dict[str, float]:
-    """Return the accelerations of a scene, and more, where all that is not given is 0."""
-    own = library(parse_scene(text_of(name, "accelerations", *beside), name))
+def answered(name: str, given: Mapping[str, float]) -> dict[str, float]:
+    """Return the accelerations of a scene where all that is not given is 0."""
+    own = library(parse_scene((SCENES / f"{name}.toml").read_text(encoding="utf-8"), name))
     at = {c: arb(float(given.get(c, 0))) for q in own.vocabulary.given() for c in q.components}
-    return {n: float(x) for p in own.functions for n, x in results(own, p, at).items()}
-
-
-Squeezed = Callable[[Sequence[float]], Mapping[str, float]]
+    return {n: float(x) for n, x in results(own, own["accelerations"], at).items()}
 
 
 @pytest.fixture(scope="module")
-def squeezed() -> Squeezed:
+def squeezed() -> derive.Handle:
+    """Return Andrews' mechanism, with what holds its loops and a step wanted beside."""
+    asked = tomllib.loads((SCENES / "squeezer.toml").read_text(encoding="utf-8"))
+    loops = f"loops: {', '.join(FORCES_AT_END)}"
+    return derive.load(asked | {"wanted": ["accelerations", loops, "step_rk4"]}, name="squeezer")
+
+
+def accelerations_in(scene: derive.Handle, state: Sequence[float]) -> dict[str, float]:
     """Return the accelerations of Andrews' mechanism, of its angles and their rates."""
-    function = derive.load(SCENES / "squeezer.toml").function("accelerations")
     names = [*SQUEEZED, *(f"{name}_dot" for name in SQUEEZED)]
-
-    def at(state: Sequence[float]) -> Mapping[str, float]:
-        found = function(**dict(zip(names, state, strict=True)))
-        return {f"{name}_ddot": float(x) for name, x in zip(SQUEEZED, found, strict=True)}
-
-    return at
+    found = scene.function("accelerations")(**dict(zip(names, state, strict=True)))
+    return {f"{name}_ddot": float(x) for name, x in zip(SQUEEZED, found, strict=True)}
 
 
 @pytest.mark.long
-def test_andrews_squeezing_mechanism_begins_as_published(squeezed: Squeezed) -> None:
-    found = squeezed([*SQUEEZED.values(), *(0.0 for _ in SQUEEZED)])
+def test_andrews_squeezing_mechanism_begins_as_published(squeezed: derive.Handle) -> None:
+    found = accelerations_in(squeezed, [*SQUEEZED.values(), *(0.0 for _ in SQUEEZED)])
     assert found["beta_ddot"] == pytest.approx(14222.4439199541138705, rel=ROUNDED)
     assert found["theta_ddot"] == pytest.approx(-10666.8329399655854029, rel=ROUNDED)
     rest = (found[f"{name}_ddot"] for name in SQUEEZED if name not in ("beta", "theta"))
@@ -86,9 +80,12 @@ def test_andrews_squeezing_mechanism_begins_as_published(squeezed: Squeezed) -> 
 
 
 @pytest.mark.long
-def test_andrews_squeezing_mechanism_is_after_30_ms_where_published(squeezed: Squeezed) -> None:
+def test_andrews_squeezing_mechanism_is_after_30_ms_where_published(
+    squeezed: derive.Handle,
+) -> None:
     def rate(_: float, state: np.ndarray) -> np.ndarray:
-        return np.array([*state[len(SQUEEZED) :], *squeezed(state).values()], float)
+        own = accelerations_in(squeezed, state)
+        return np.array([*state[len(SQUEEZED) :], *own.values()], float)
 
     start = [*SQUEEZED.values(), *(0.0 for _ in SQUEEZED)]
     moved = solve_ivp(rate, (0, 0.03), start, method="DOP853", rtol=1e-10, atol=1e-11)
@@ -97,9 +94,12 @@ def test_andrews_squeezing_mechanism_is_after_30_ms_where_published(squeezed: Sq
 
 
 @pytest.mark.long
-def test_andrews_squeezing_mechanism_ends_with_the_published_accelerations_and_forces() -> None:
+def test_andrews_squeezing_mechanism_ends_with_the_published_accelerations_and_forces(
+    squeezed: derive.Handle,
+) -> None:
     given = AT_END | {f"{name}_dot": rate for name, rate in RATES_AT_END.items()}
-    found = answered("squeezer", given, "loops: " + ", ".join(FORCES_AT_END))
+    found = accelerations_in(squeezed, [*given.values()])
+    found |= zip(FORCES_AT_END, map(float, squeezed.function("loops")(**given)), strict=True)
     for name, should in BENDS_AT_END.items():
         assert found[f"{name}_ddot"] == pytest.approx(should, abs=FOLLOWED * 566749), name
     against = {round(found[name] / should, 4) for name, should in FORCES_AT_END.items()}
@@ -108,12 +108,10 @@ def test_andrews_squeezing_mechanism_ends_with_the_published_accelerations_and_f
 
 @pytest.mark.long
 def test_andrews_squeezing_mechanism_is_moved_by_steps_to_where_it_is_published(
-    tmp_path: Path,
+    squeezed: derive.Handle,
 ) -> None:
-    at = tmp_path / "squeezer.toml"
-    at.write_text(text_of("squeezer", "step_rk4"), encoding="utf-8")
     start = SQUEEZED | {f"{name}_dot": 0.0 for name in SQUEEZED}
-    motion = derive.load(str(at)).simulate(start, 0.03, 3e-5)
+    motion = squeezed.simulate(start, 0.03, 3e-5)
     for name, should in AT_END.items():
         assert motion.states[name][-1] == pytest.approx(should, abs=5e-8), name
         rate = RATES_AT_END[name]
