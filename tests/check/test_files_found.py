@@ -53,6 +53,7 @@ def test_a_missing_file_is_named(folder: Path) -> None:
     assert f"{NAME}/{NAME}_f32.h" in files(library_of(NAME), folder, FEW).differ
 
 
+@pytest.mark.long
 def test_what_was_asked_for_beside_is_made_again_and_what_is_no_longer_is_left_over(
     tmp_path: Path,
 ) -> None:

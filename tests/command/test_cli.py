@@ -117,9 +117,8 @@ def test_the_folder_of_a_scene_that_is_no_more_is_left_over(tmp_path):
 
 @pytest.mark.long
 def test_an_edit_of_the_scene_fails_the_check(made, tmp_path, capsys):
-    text = (
-        Path(__file__).parents[2] / "derive" / "scene" / "catalogue" / f"{SCENE}.toml"
-    ).read_text()
+    catalogue = Path(__file__).parents[2] / "derive" / "scene" / "catalogue"
+    text = (catalogue / f"{SCENE}.toml").read_text()
     other = tmp_path / f"{SCENE}.toml"
     other.write_text(text.replace("title", "# a remark\ntitle", 1))
     assert main(["generate", *FEW, str(other), "--out", str(made), "--check"]) == 1

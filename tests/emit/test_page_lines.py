@@ -2,12 +2,14 @@
 
 from typing import Any
 
+import pytest
 from sympy import Expr
 
 from derive.emit.page import equation
 from tests.made import library_of
 
 
+@pytest.mark.long
 def test_only_functions_of_few_lines_are_written_as_by_hand(monkeypatch: Any) -> None:
     """Of as many lines as are neat both sides of each are tidied; with one more, none."""
     mechanism, tidied = library_of("acrobot").mechanism, list[Expr]()

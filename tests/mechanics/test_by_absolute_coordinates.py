@@ -90,6 +90,7 @@ def closed(first: float, base: float) -> tuple[float, float]:
     return float(coupler), float(np.arctan2(y + np.sin(coupler), x + np.cos(coupler)))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("crank", [1.2, 1.7])
 def test_two_four_bars_in_a_row_move_as_five_bars_pinned_to_each_other(crank: float) -> None:
     def angles(q: float) -> np.ndarray[Any, Any]:

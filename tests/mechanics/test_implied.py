@@ -56,9 +56,8 @@ FREE = {"satellite_with_arm": 682, "satellite_with_two_links": 2099}
 """Operations of the accelerations of links that hang on a free body, with their Jacobian."""
 
 
-@pytest.mark.parametrize(
-    "name", ["satellite_with_arm", pytest.param("satellite_with_two_links", marks=pytest.mark.long)]
-)
+@pytest.mark.long
+@pytest.mark.parametrize("name", ["satellite_with_arm", "satellite_with_two_links"])
 def test_links_on_a_free_body_are_linearised_by_the_factors_of_the_way_that_is_taken(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:

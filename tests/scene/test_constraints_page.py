@@ -23,6 +23,7 @@ def test_an_example_of_the_page_is_a_scene_and_is_proved(text: str) -> None:
     assert proof(library(scene)).outcome == "holds"
 
 
+@pytest.mark.long
 def test_a_start_of_the_example_that_is_off_is_refused_by_the_sentence_of_the_page() -> None:
     scene = derive.load(tomllib.loads(EXAMPLES[0]) | {"wanted": ["step_rk4"]}, name="loop")
     rates = dict.fromkeys(("q_1_dot", "q_2_dot", "q_3_dot"), 0.0)

@@ -86,6 +86,7 @@ def test_twice_a_number_is_exact() -> None:
     assert not any(exact[n] for n in sums)
 
 
+@pytest.mark.long
 def test_what_most_of_a_box_has_no_bound_of_is_not_cut_to_the_end(monkeypatch: Any) -> None:
     """The mass matrix of two links is never singular, but ranges do not tell that."""
     at = cut_of("acrobot", "state_rate", "q_1_dot_rate")

@@ -48,6 +48,7 @@ def test_a_member_stops_where_an_equation_holds_first(
         assert np.nanmax(np.abs(kept - start[:, None] - 2 * times)) < ROUNDED
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("until", "start"), [(0.5, "uniform(0.41, 0.48)"),
                                               (0.25, "uniform(0.02, 0.09)")])  # fmt: skip
 def test_what_comes_and_goes_in_the_first_or_last_step_is_met(

@@ -53,6 +53,7 @@ def test_members_that_nobody_tried_keep_to_the_error(error: float, tmp_path: Pat
     assert error / 30 < worst < error  # no promise, and no waste: RK4 gains 16 by half the length
 
 
+@pytest.mark.long
 def test_a_length_that_is_not_judged_keeps_to_nothing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
