@@ -9,6 +9,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 
+import derive
 from derive.motion import moser_veselov
 from derive.program.arithmetic import MANTISSA, working
 from derive.program.indexed import Loop
@@ -280,3 +281,18 @@ def test_a_step_with_one_sign_changed_is_noticed(place: int) -> None:
     mutant = replace(stepper, step=replace(stepper.step, ops=tuple(ops)))
     ends = [s.moved(tensor, START, Fraction(1, 16), 2) for s in (stepper, mutant)]
     assert max(apart(*ends)) > 1e-9  # many times the error of two steps
+
+
+@pytest.mark.parametrize("dtype", PRECISIONS)
+@pytest.mark.parametrize("step", [5e-324, 1e-45, 1e-36, 2.0**-96, 2.0**-95, 1e-20])
+def test_a_plan_for_hardly_any_time_is_finite_and_its_step_stays(step: float, dtype: type) -> None:
+    scene = derive.load("tumbling_body")
+    precision: Any = "float" if dtype is np.float32 else "double"
+    plan, going = (scene.function(f"{n}_dmv", precision=precision) for n in ("plan", "step"))
+    moments = {"I_xx": 0.5, "I_yy": 0.75, "I_zz": 1.0}
+    attitude, omega = np.array([0.6, 0.0, 0.8, 0.0]), np.array([3.0, -2.0, 1.0])
+    planned = plan(omega=omega, time_step=step, **moments)
+    assert np.isfinite(planned).all()
+    after = going(plan=planned, attitude=attitude, omega=omega, remainder=np.zeros(7))
+    assert np.allclose(after[0], attitude, rtol=0, atol=1e-7)
+    assert np.allclose(after[1], omega, rtol=1e-6)

@@ -28,6 +28,8 @@ from derive.program.pairs import two_product
 from derive.program.tape import Number, Tape, Vector, named, number
 
 CYCLIC = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
+HARDLY = Fraction(1, 2**96)
+"""Seconds in which nothing changes that a double holds, and by which floats may be divided."""
 
 
 def plan_dmv(
@@ -49,7 +51,7 @@ def plan_dmv(
     s, moments, ratios = _ratios(axes, omega, time_step)
     plan: list[tuple[str, Number, str]] = []
     factor = splitter(tape)
-    moves = less(0, absolute(time_step))  # in no time nothing changes, whatever gain is
+    moves = less(HARDLY, absolute(time_step))  # in no time nothing changes, whatever gain is
     quarter = select(moves, time_step * Fraction(1, 4), 1)
     for n, axis in enumerate(AXES):
         half = time_step * Fraction(1, 2) * ratios[n]
