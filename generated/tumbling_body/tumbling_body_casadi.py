@@ -1790,7 +1790,7 @@ def _plan_dmv():
     t94 = t55 + t93
     t95 = 134217729.0
     t96 = ca.if_else(time_step[0] < 0.0, -1.0, 1.0) * time_step[0]
-    t97 = 0.0 < t96
+    t97 = 1.262177448353619e-29 < t96
     t98 = time_step[0] * 0.25
     t99 = ca.if_else(t97, t98, 1.0)
     t100 = time_step[0] * 0.5

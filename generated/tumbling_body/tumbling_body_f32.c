@@ -1796,7 +1796,7 @@ void tumbling_body_plan_dmv_f32(const tumbling_body_constants_f32 *constants, co
     const float t94 = t55 + t93;
     const float t95 = 4097.0F;
     const float t96 = fabsf(time_step);
-    const _Bool t97 = 0.0F < t96;
+    const _Bool t97 = 1.26217745e-29F < t96;
     const float t98 = time_step * 0.25F;
     const float t99 = t97 ? t98 : 1.0F;
     const float t100 = time_step * 0.5F;

@@ -20,7 +20,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of float, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 9be046494f49eedc.
+ * Body of these files: sha256 501976a92e2c794b.
  */
 #ifndef TUMBLING_BODY_F32_H
 #define TUMBLING_BODY_F32_H
@@ -157,7 +157,7 @@ void tumbling_body_kinetic_energy_f32(const tumbling_body_constants_f32 *constan
  * Cost: 170 add, 50 sub, 387 mul, 121 div, 1 neg, 29 sqrt, 2 sin, 2 cos, 14 abs, 2 at_most, 1
  *            both, 13 less, 2 power_of_two, 35 select.
  * On Cortex-M0+, -O2: 111871 to 119957 instructions, 8288 B of code, 456 B of stack.
- * On Cortex-M4F, -O2: 1372 to 1388 instructions, 6980 B of code, 372 B of stack.
+ * On Cortex-M4F, -O2: 1372 to 1389 instructions, 6980 B of code, 372 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -176,8 +176,8 @@ void tumbling_body_flow_exact_f32(const tumbling_body_constants_f32 *constants,
  *            plan, thin rod).
  * Bound: not proved: a divisor may vanish for all that ranges tell.
  * Cost: 43 add, 21 sub, 101 mul, 6 div, 1 abs, 1 less, 1 select, 1 splitter.
- * On Cortex-M0+, -O2: 19086 to 19581 instructions, 1712 B of code, 104 B of stack.
- * On Cortex-M4F, -O2: 237 instructions, 952 B of code, 0 B of stack.
+ * On Cortex-M0+, -O2: 19091 to 19586 instructions, 1712 B of code, 104 B of stack.
+ * On Cortex-M4F, -O2: 238 instructions, 960 B of code, 0 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -198,7 +198,7 @@ void tumbling_body_plan_dmv_f32(const tumbling_body_constants_f32 *constants, co
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
  * Bound: not proved: its plan, of another function, has no enclosure here.
  * Cost: 207 add, 69 sub, 372 mul, 22 div, 1 neg, 18 sqrt, 16 abs, 16 at_most.
- * On Cortex-M0+, -O2: 19966 to 23883 instructions, 1808 B of code, 168 B of stack.
+ * On Cortex-M0+, -O2: 19967 to 23883 instructions, 1808 B of code, 168 B of stack.
  * On Cortex-M4F, -O2: 247 to 285 instructions, 1232 B of code, 144 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
@@ -269,7 +269,7 @@ void tumbling_body_step_split_f32(const tumbling_body_constants_f32 *constants,
  *            1.2e-07), omega_next 3e-05 rad/s (seen 1.3e-06); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 460 add, 69 sub, 470 mul, 45 div, 45 neg, 2 less, 18 select.
- * On Cortex-M0+, -O2: 110674 to 112578 instructions, 9684 B of code, 512 B of stack.
+ * On Cortex-M0+, -O2: 110675 to 112578 instructions, 9684 B of code, 512 B of stack.
  * On Cortex-M4F, -O2: 1162 to 1191 instructions, 4948 B of code, 120 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
@@ -338,7 +338,7 @@ void tumbling_body_step_rk4_jacobian_f32(const tumbling_body_constants_f32 *cons
     float omega_next[3], float jacobian[37]);
 
 /* The same, the whole matrix: 49 entries.
- * On Cortex-M0+, -O2: 73690 to 74773 instructions, 7440 B of code, 400 B of stack.
+ * On Cortex-M0+, -O2: 73689 to 74774 instructions, 7440 B of code, 400 B of stack.
  * On Cortex-M4F, -O2: 1059 instructions, 4300 B of code, 248 B of stack.
  */
 void tumbling_body_step_rk4_jacobian_dense_f32(const tumbling_body_constants_f32 *constants,

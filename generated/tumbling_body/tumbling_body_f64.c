@@ -1787,7 +1787,7 @@ void tumbling_body_plan_dmv_f64(const tumbling_body_constants_f64 *constants, co
     const double t94 = t55 + t93;
     const double t95 = 134217729.0;
     const double t96 = fabs(time_step);
-    const _Bool t97 = 0.0 < t96;
+    const _Bool t97 = 1.262177448353619e-29 < t96;
     const double t98 = time_step * 0.25;
     const double t99 = t97 ? t98 : 1.0;
     const double t100 = time_step * 0.5;

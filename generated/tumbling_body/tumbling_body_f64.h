@@ -20,7 +20,7 @@
  * in rad, SI units, quaternions scalar first (body to inertial), N inertial axes, B the body's. Errors
  * are in u, the unit roundoff of double, times the largest product or sum in the equation of
  * an output, multiplied out and solved; of motions and attitudes, times the largest component.
- * Body of these files: sha256 cece97a29ca468be.
+ * Body of these files: sha256 4d25f4770de50ffa.
  */
 #ifndef TUMBLING_BODY_F64_H
 #define TUMBLING_BODY_F64_H
@@ -177,7 +177,7 @@ void tumbling_body_flow_exact_f64(const tumbling_body_constants_f64 *constants,
  *            samples of the ranges, 65536 searched from the worst); at 8270 hard samples no more.
  * Bound: not proved: a divisor may vanish for all that ranges tell.
  * Cost: 43 add, 21 sub, 101 mul, 6 div, 1 abs, 1 less, 1 select, 1 splitter.
- * On Cortex-M0+, -O2: 42869 to 43498 instructions, 2816 B of code, 192 B of stack.
+ * On Cortex-M0+, -O2: 42874 to 43502 instructions, 2820 B of code, 192 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -245,7 +245,7 @@ void tumbling_body_step_split2_f64(const tumbling_body_constants_f64 *constants,
  *            2e-16), omega_next 1.9e-14 rad/s (seen 2.1e-15); assumed: quaternions given with
  *            |q|^2 in 0.999 .. 1.001.
  * Cost: 292 add, 45 sub, 306 mul, 29 div, 29 neg, 2 less, 18 select.
- * On Cortex-M0+, -O2: 156529 to 158352 instructions, 9936 B of code, 688 B of stack.
+ * On Cortex-M0+, -O2: 156530 to 158352 instructions, 9936 B of code, 688 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -296,7 +296,7 @@ void tumbling_body_step_split6_f64(const tumbling_body_constants_f64 *constants,
  *            |q|^2 in 0.999 .. 1.001.
  * Singular: at attitude = 0, attitude_next infinite, no number or beyond all measure.
  * Cost: 63 add, 18 sub, 111 mul, 1 div, 1 sqrt.
- * On Cortex-M0+, -O2: 44274 to 45132 instructions, 2752 B of code, 328 B of stack.
+ * On Cortex-M0+, -O2: 44273 to 45132 instructions, 2752 B of code, 328 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
@@ -381,7 +381,7 @@ void tumbling_body_step_lie_f64(const tumbling_body_constants_f64 *constants,
  *            the ranges, 65536 searched from the worst); at 8270 hard samples no more.
  * Bound: not proved: 6457 operations are more than the 2000 tried.
  * Cost: 2394 add, 915 sub, 3416 mul, 22 div, 1 neg, 9 sqrt, 28 abs, 3 less, 3 select.
- * On Cortex-M0+, -O2: 1525465 to 1537414 instructions, 4148 B of code, 2152 B of stack.
+ * On Cortex-M0+, -O2: 1525464 to 1537414 instructions, 4148 B of code, 2152 B of stack.
  * Rests on: axes_are_orthonormal, body_axes, body_triad, body_triad_is_orthonormal, constant_mass,
  *            newton, quaternion_of_axes, rate_seen_from_N, reference_point, rigid,
  *            strong_third_law, third_law, unit_quaternion.
