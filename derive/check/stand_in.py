@@ -173,10 +173,15 @@ def between(low: float, high: float, precision: Precision) -> str:
 
 
 def ends_in_c(low: float, high: float, precision: Precision) -> tuple[str, str]:
-    """Return the C of the nearest floats that have two numbers between them."""
+    """Return the C of the nearest floats that have two numbers between them, finite ones.
+
+    What becomes infinite is an alarm where it does; from there on nothing is asked.
+    """
     kind, ends = precision.dtype, []
+    most = float(np.finfo(kind).max)
     for end, way in ((low, -np.inf), (high, np.inf)):
         held = kind(end)
         inward = float(held) > end if way < 0 else float(held) < end
         ends.append(float(np.nextafter(held, kind(way))) if inward else float(held))
-    return ends[0].hex(), ends[1].hex()
+    low, high = (min(max(end, -most), most) for end in ends)
+    return low.hex(), high.hex()

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from derive.check.eva import cut_into_parts, entered, shown_by_eva
-from derive.check.stand_in import AROUND, with_bounds
+from derive.check.stand_in import AROUND, ends_in_c, with_bounds
 from derive.cli import main
 from derive.emit.c.source import c_files
 from derive.program.arithmetic import extended
@@ -133,6 +133,13 @@ def table_of(text: str, name: str) -> tuple[float, list[float], list[float]]:
     )
     assert found
     return float(found[1]), *([float.fromhex(x) for x in found[k].split(", ")] for k in (2, 3))
+
+
+@pytest.mark.parametrize("precision", PRECISIONS, ids=lambda p: p.name)
+def test_an_end_that_is_infinite_is_told_as_the_largest_number(precision: Precision) -> None:
+    ends = ends_in_c(-np.inf, np.inf, precision)
+    most = float(np.finfo(precision.dtype).max)
+    assert [*map(float.fromhex, ends)] == [-most, most]
 
 
 def test_bounds_of_operations_on_pairs_hold() -> None:
