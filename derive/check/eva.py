@@ -40,7 +40,7 @@ from derive.program.precision import F32, PRECISIONS, Precision
 from derive.program.program import Program, Quantity
 from derive.scene.declaration import DeriveError
 from derive.verify.proved.bounds import ends_in_floats
-from derive.verify.proved.divisors import Divisor, divisors, ranges_of_results
+from derive.verify.proved.divisors import ProvedRange, divisors, ranges_of_results
 from derive.verify.proved.regular import (
     FloatRanges,
     PairOperation,
@@ -81,7 +81,7 @@ def shown_by_eva(library: Library, sources: Mapping[str, str] | None = None) -> 
         folder = Path(place)
         for name, text in texts.items():
             (folder / name).write_text(with_bounds(text), encoding="utf-8")
-        proved = dict[str, tuple[Divisor, ...]]()
+        proved = dict[str, tuple[ProvedRange, ...]]()
         for precision in PRECISIONS:
             of = Analysis(library, precision, folder, proved)
             text = texts[CNames(library.scene.name).file(precision, "c")]
@@ -103,7 +103,7 @@ class Analysis:
     library: Library
     precision: Precision
     folder: Path
-    proved: dict[str, tuple[Divisor, ...]]
+    proved: dict[str, tuple[ProvedRange, ...]]
 
     def head(self, name: str) -> tuple[str, str, str, str]:
         """Return of what a verdict is."""
@@ -137,7 +137,7 @@ class Analysis:
         ranges = () if alone.outcome != "skipped" else self.divisors(program)
         return self._told(program, ranges) if ranges else alone
 
-    def _told(self, program: Program, ranges: Sequence[Divisor]) -> Verdict:
+    def _told(self, program: Program, ranges: Sequence[ProvedRange]) -> Verdict:
         """Return what Eva says of a function whose divisors it is told of."""
         head, own = self.head(program.name), _hot(self.library, program)
         if says := escaped(self.library, own, ranges, self.precision):
@@ -158,7 +158,7 @@ class Analysis:
         cases, own = cases_of(self.library, program, self.precision), _hot(self.library, program)
         return whole_sectors(self.library, own, cases, self.precision) if cases else []
 
-    def divisors(self, program: Program) -> tuple[Divisor, ...]:
+    def divisors(self, program: Program) -> tuple[ProvedRange, ...]:
         """Return the divisors of a function that are proved: in float, and so in double too."""
         every, own = _given(self.library, program, F32), _hot(self.library, program)
         if own.name not in self.proved and not isinstance(every, str):
@@ -191,7 +191,9 @@ def _plans(library: Library, program: Program) -> list[tuple[Program, Quantity]]
     return [(p, q) for q in plans for p in library.printed() if q in p.outputs]
 
 
-def planned_ranges(library: Library, made: Program, precision: Precision) -> tuple[Divisor, ...]:
+def planned_ranges(
+    library: Library, made: Program, precision: Precision
+) -> tuple[ProvedRange, ...]:
     """Return the ranges of all that a plan has, by their names in the function that makes it."""
     given = _given(library, made, precision)
     return () if isinstance(given, str) else ranges_of_results(library, made, given, precision)

@@ -17,7 +17,7 @@ from derive.program.run import numbers_of, run_lines
 from derive.verify.columns import arithmetics, supplied
 from derive.verify.draw import Dice, Sampled, drawn
 from derive.verify.operators import Column
-from derive.verify.proved.divisors import Divisor
+from derive.verify.proved.divisors import ProvedRange
 from derive.verify.proved.seen import by_component
 
 TRIED = 4096
@@ -25,7 +25,7 @@ TRIED = 4096
 
 
 def escaped(
-    library: Library, program: Program, ranges: Sequence[Divisor], precision: Precision
+    library: Library, program: Program, ranges: Sequence[ProvedRange], precision: Precision
 ) -> str:
     """Return which value of a function leaves its range at a sample, "" if none does."""
     of, by = Sampled(library, precision), arithmetics(precision.dtype)
@@ -36,11 +36,11 @@ def escaped(
     known = dict(at.own) | numbers_of(program, by.own)
     with np.errstate(all="ignore"):
         run_lines(program.ops, by.own, known)
-    for divisor in ranges:
-        found = known[divisor.name]
-        if not np.all((divisor.low <= found) & (found <= divisor.high)):
-            is_between = f"{divisor.name} is {found.min():g} .. {found.max():g} at samples"
-            return f"{is_between}, beyond what is proved, {divisor.low:g} .. {divisor.high:g}"
+    for proved in ranges:
+        found = known[proved.name]
+        if not np.all((proved.low <= found) & (found <= proved.high)):
+            is_between = f"{proved.name} is {found.min():g} .. {found.max():g} at samples"
+            return f"{is_between}, beyond what is proved, {proved.low:g} .. {proved.high:g}"
     return ""
 
 
@@ -51,16 +51,16 @@ def _floats_of_the_ranges(of: Sampled, rows: Column) -> Column:
     return np.where(own < of.lows[:, None], np.nextafter(own, np.inf), own).astype(rows.dtype)
 
 
-def with_ranges(text: str, symbol: str, ranges: Sequence[Divisor]) -> str:
+def with_ranges(text: str, symbol: str, ranges: Sequence[ProvedRange]) -> str:
     """Return C in which a function's values are told to be in ranges, where it makes them."""
     body = re.search(rf"^void {symbol}\([^)]*\)\n\{{\n.*?^\}}$", text, re.MULTILINE | re.DOTALL)
     if body is None:
         return text
     told = body[0]
-    for divisor in ranges:
-        made = re.compile(rf"^(    const (\w+) {divisor.name} = )[^;]*;$", re.MULTILINE)
-        ends = f"{divisor.low!r}, {divisor.high!r}"
-        says = f"    /*@ admit {divisor.low!r} <= {divisor.name} <= {divisor.high!r}; */"
-        new = rf"\g<1>Frama_C_\g<2>_interval({ends});" if divisor.quotient else "\\g<0>"
+    for proved in ranges:
+        made = re.compile(rf"^(    const (\w+) {proved.name} = )[^;]*;$", re.MULTILINE)
+        ends = f"{proved.low!r}, {proved.high!r}"
+        says = f"    /*@ admit {proved.low!r} <= {proved.name} <= {proved.high!r}; */"
+        new = rf"\g<1>Frama_C_\g<2>_interval({ends});" if proved.quotient else "\\g<0>"
         told = made.sub(f"{new}\n{says}", told, count=1)
     return text[: body.start()] + told + text[body.end() :]

@@ -113,20 +113,16 @@ def _value(e: Expr, at: Sweep) -> Any:
     return at.of(e)[0]
 
 
-def _length(frames: Frames, d: Matrix) -> Expr:
-    one = along_one_line(frames, d)
-    return sqrt((d.T * d)[0]) if one is None else one
-
-
 def _spring(frames: Frames, load: Spring) -> Iterator[Wrench]:
     words, sheet = frames.words, frames.sheet
     d, top = stretched(frames, load)
     k, c, rest = (words.expression(f) for f in (load.stiffness, load.damping, load.length))
     force: Matrix = k * d
     if rest != 0 or c != 0:
-        if along_one_line(frames, d) is None:
+        one = along_one_line(frames, d)
+        if one is None:
             _require_length(frames, load, (d.T * d)[0])
-        size = sheet.named(f"{load.name}.length", _length(frames, d))
+        size = sheet.named(f"{load.name}.length", sqrt((d.T * d)[0]) if one is None else one)
         force = force - (k * rest / size) * d
         opening = sum((x * v for x, v in zip(d, sheet.rate_of_column(d), strict=True)), Integer(0))
         force = force + (c * opening / size**2) * d
@@ -180,7 +176,8 @@ def potential_energy(frames: Frames) -> Expr:
             k, rest = (frames.words.expression(f) for f in (load.stiffness, load.length))
             _keeps(frames, load.name, "stiffness and length", [k, rest])
             square = (d.T * d)[0]
-            size = _length(frames, d) if rest != 0 else Integer(0)
+            one = along_one_line(frames, d) if rest != 0 else Integer(0)
+            size = sqrt(square) if one is None else one
             total += Rational(1, 2) * k * (square - 2 * rest * size + rest**2)
     return total
 

@@ -15,7 +15,7 @@ from derive.program.arithmetic import working
 from derive.program.precision import F32, PRECISIONS
 from derive.verify.proved import divisors as made
 from derive.verify.proved.bounds import ends_in_floats
-from derive.verify.proved.divisors import Divisor, divisors
+from derive.verify.proved.divisors import ProvedRange, divisors
 from derive.verify.proved.scaled import scaling
 from tests.made import library_of
 
@@ -23,7 +23,7 @@ NAME, FUNCTION = "cart_pendulum", "rail"
 SCALED = "tumbling_disc"
 
 
-def proved(name: str, function: str, **ends: tuple[float, float]) -> tuple[Divisor, ...]:
+def proved(name: str, function: str, **ends: tuple[float, float]) -> tuple[ProvedRange, ...]:
     """Return the divisors of a function that are proved, over other ranges of some inputs."""
     library = library_of(name)
     program = library[function]
@@ -117,7 +117,7 @@ def test_parts_that_are_lost_are_missed(monkeypatch: Any) -> None:
 
 def test_c_is_told_of_a_value_after_it_is_made_and_in_its_function_alone() -> None:
     text = c_files(library_of(NAME), ())[f"{NAME}_f32.c"]
-    told = with_ranges(text, f"{NAME}_{FUNCTION}_f32", [Divisor("t13", -1.5, -0.25)])
+    told = with_ranges(text, f"{NAME}_{FUNCTION}_f32", [ProvedRange("t13", -1.5, -0.25)])
     (line,) = [n for n, row in enumerate(told.splitlines()) if "admit" in row]
     assert re.match(r"    const float t13 = ", told.splitlines()[line - 1])
     assert "1.0F / t13" in told.splitlines()[line + 1]
@@ -127,7 +127,9 @@ def test_c_is_told_of_a_value_after_it_is_made_and_in_its_function_alone() -> No
 def test_c_has_the_range_of_a_quotient_that_is_proved_in_its_place() -> None:
     text = c_files(library_of(NAME), ())[f"{NAME}_f32.c"]
     (asked,) = re.findall(r"    const float (\w+) = 1.0F / t13;", text)
-    told = with_ranges(text, f"{NAME}_{FUNCTION}_f32", [Divisor(asked, -4.0, 4.0, quotient=True)])
+    told = with_ranges(
+        text, f"{NAME}_{FUNCTION}_f32", [ProvedRange(asked, -4.0, 4.0, quotient=True)]
+    )
     says = f"= Frama_C_float_interval(-4.0, 4.0);\n    /*@ admit -4.0 <= {asked} <= 4.0; */"
     assert told.replace(says, "= 1.0F / t13;") == text
     assert told != text
@@ -139,7 +141,7 @@ def test_a_range_that_contradicts_what_eva_finds_fails(monkeypatch: Any) -> None
     library = library_of(NAME)
     monkeypatch.setattr(eva, "all_of", lambda of: [of[FUNCTION]])
     monkeypatch.setattr(eva, "escaped", lambda *_: "")
-    monkeypatch.setattr(eva, "divisors", lambda *_: (Divisor("t13", 1e6, 2e6),))
+    monkeypatch.setattr(eva, "divisors", lambda *_: (ProvedRange("t13", 1e6, 2e6),))
     rows = [v for v in shown_by_eva(library) if v.function == FUNCTION]
     assert [v.outcome for v in rows] == ["FAILS", "FAILS"]
     assert all("does not return" in v.says for v in rows)

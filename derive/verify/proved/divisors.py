@@ -37,7 +37,7 @@ NEXT = 2.0**-16
 
 
 @dataclass(frozen=True)
-class Divisor:
+class ProvedRange:
     """A value of a function by its name, and between which floats it is wherever it is called.
 
     quotient : whether it is one whose divisor, by itself, may be as near to zero as it will
@@ -61,7 +61,7 @@ def divisors(
     function: Program,
     boxes: Mapping[str, tuple[float, float]],
     precision: Precision,
-) -> tuple[Divisor, ...]:
+) -> tuple[ProvedRange, ...]:
     """Return the divisors of a function whose ranges are proved, in its order.
 
     boxes : of parameters and of the function's other inputs, the ends by component
@@ -75,11 +75,11 @@ def ranges_of_results(
     function: Program,
     boxes: Mapping[str, tuple[float, float]],
     precision: Precision,
-) -> tuple[Divisor, ...]:
+) -> tuple[ProvedRange, ...]:
     """Return the ranges of a function's results, its divisors' known; boxes as of ``divisors``."""
     at, _, by_name = _walked(library, function, boxes, precision)
     names = [str(o) for o in function.results if o in by_name]
-    return tuple(Divisor(name, *at.enclosed(by_name[name])) for name in names)
+    return tuple(ProvedRange(name, *at.enclosed(by_name[name])) for name in names)
 
 
 def _walked(
@@ -87,12 +87,12 @@ def _walked(
     function: Program,
     boxes: Mapping[str, tuple[float, float]],
     precision: Precision,
-) -> "tuple[Walk, tuple[Divisor, ...], dict[str, int]]":
+) -> "tuple[Walk, tuple[ProvedRange, ...], dict[str, int]]":
     """Return a function with divisors that are done with, these, and where values stand by name."""
     steps, divided, by_name = _recorded(library, function, precision)
     quaternions = [q.components for q in function.inputs if q.is_quaternion]
     at = Walk(steps, dict(boxes), quaternions, precision, Work())
-    found, sized = dict[str, Divisor](), list[Scaled]()
+    found, sized = dict[str, ProvedRange](), list[Scaled]()
     for op in divided:
         name = str(op.operands[-1])
         if name in found or at.is_root_of_none_below(op, by_name[name]):
@@ -102,22 +102,22 @@ def _walked(
         ends = None if told else at.proved(by_name[name])
         if not (told or ends):
             break
-        told = told or Divisor(name, *(ends or ()))
+        told = told or ProvedRange(name, *(ends or ()))
         at.stands_for(by_name[told.name], (told.low, told.high))
         found[told.name] = told
     return at, tuple(found.values()), by_name
 
 
-def _of_any_size(sized: Sequence[Scaled], op: Op, places: Mapping[str, int]) -> Divisor | None:
+def _of_any_size(sized: Sequence[Scaled], op: Op, places: Mapping[str, int]) -> ProvedRange | None:
     """Return the range of a divisor that is the same for values of any size, or its quotient's."""
     for each in sized:
         name = str(op.operands[-1])
         ends = each.ends(places[name])
         if ends and not ends[0] <= 0 <= ends[1]:
-            return Divisor(name, *ends)
+            return ProvedRange(name, *ends)
         ends = each.ends(places[op.result]) if op.operator == "div" else None
         if ends:
-            return Divisor(op.result, *ends, quotient=True)
+            return ProvedRange(op.result, *ends, quotient=True)
     return None
 
 
@@ -175,7 +175,7 @@ class Walk:
         every = step.operator in ("add", "mul") and all(map(self._never_below, step.operands))
         return every or step.operator in NEVER_LESS or (step.number or -1) > 0
 
-    def quotient(self, op: Op, places: Mapping[str, int]) -> Divisor | None:
+    def quotient(self, op: Op, places: Mapping[str, int]) -> ProvedRange | None:
         """Return the range of a sine by what its angle is a multiple of, None of other quotients.
 
         The divisor is above zero, or a number stands for it. What underflow takes of the angle is
@@ -193,7 +193,7 @@ class Walk:
         least = float(np.finfo(self.precision.dtype).smallest_subnormal)
         smallest = np.sqrt(least) if self.steps[size].operator == "sqrt" else least
         reach = most * (1 + NEXT) + (len(ends) + 2) * max(1.0, most) * float(least / smallest)
-        return Divisor(op.result, -reach, reach, quotient=True) if np.isfinite(reach) else None
+        return ProvedRange(op.result, -reach, reach, quotient=True) if np.isfinite(reach) else None
 
     def _is_sine(self, place: int) -> bool:
         return self.steps[place].operator == "sin"
